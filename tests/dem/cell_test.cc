@@ -31,5 +31,5 @@ TEST(Cell, ImageCodesRoundTrip) {
   for (int a = -1; a <= 1; ++a)
     for (int b = -1; b <= 1; ++b)
       for (int c = -1; c <= 1; ++c) EXPECT_EQ(ImageCode::unpack(ImageCode::of(a, b, c)), Eigen::Vector3i(a, b, c));
-  EXPECT_EQ(ImageCode::of(0, 0, 0), ImageCode::none);
+  EXPECT_EQ(ImageCode::of(0, 0, 0), +ImageCode::none);
 }
