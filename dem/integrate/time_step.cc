@@ -43,7 +43,10 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
         Linearisation l;
         if (list.neck.empty()) l = loose.linearise(in);
         else l = make_sintering<Spring>(model, table.row(bucket.material_a, bucket.material_b)).linearise(in, list.neck[k]);
-        if (rule == StepRule::thesis) smallest_pair = std::min(smallest_pair, thesis_limit(l, in.reduced_mass));
+        if (rule == StepRule::thesis) {
+          smallest_pair = std::min(smallest_pair, thesis_limit(l, in.reduced_mass));
+          continue;
+        }
         const double factor = std::max(1.0, tangential);
         const bool dashpot = std::isinf(l.stiffness);  // a viscous contact without spring
         const double k_sum = dashpot ? 0.0 : factor * l.stiffness, c_sum = dashpot ? l.viscosity : factor * l.damper;
