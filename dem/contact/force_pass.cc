@@ -58,20 +58,30 @@ struct BucketContext {
   const Shifts& shifts;
   const Mat3& velocity_gradient;
   bool deforming;
-  double growth_a, growth_b;      // relative growth of the radii of both materials since the last pass
+  double growth_a, growth_b;  // relative growth of the radii of both materials since the last pass
   std::uint8_t material_a;
   const std::vector<std::uint8_t>& material;
   PassTime clock;
 };
 
 template <class Law>
-inline constexpr bool has_necks = !std::is_same_v<Law, KelvinVoigt<LinearSpring>> &&
-                                  !std::is_same_v<Law, KelvinVoigt<HertzSpring>>;
+inline constexpr bool has_necks =
+    !std::is_same_v<Law, KelvinVoigt<LinearSpring>> && !std::is_same_v<Law, KelvinVoigt<HertzSpring>>;
 
 template <class Law>
 const auto& spring_of(const Law& law) {
-  if constexpr (has_necks<Law>) return law.loose.spring;
-  else return law.spring;
+  if constexpr (has_necks<Law>)
+    return law.loose.spring;
+  else
+    return law.spring;
+}
+
+/// What heat adds to the distance at which a pair is at rest [m].  Loose spheres meet at their surfaces; through a neck
+/// the body is whole, so that only the way from each centre to the neck's plane grows and a bonded packing expands as
+/// one body, however unequal its overlaps.
+inline double thermal_growth(const Body& a, const Body& b, double overlap, double of_i, double of_j, bool necked) {
+  const double cut = necked ? 0.5 * overlap : 0.0;
+  return of_i * (a.radius + cut) + of_j * (b.radius + cut);
 }
 
 /// Pair k of a bucket.  Uniform features (deforming cell, thermal growth) are branches; law, friction and sink are not.
@@ -81,14 +91,12 @@ inline void one_pair(const BucketContext<Law>& c, Sink& sink, std::size_t k) {
   const Body &a = c.body[i], &b = c.body[j];
   const Vec3 branch = b.position - a.position + c.shifts[c.list.image(k)];
   const double reach = a.radius + b.radius, d2 = branch.squaredNorm();
-  if (d2 >= reach * reach) {
-    bool necked = false;
-    if constexpr (has_necks<Law>) necked = c.list.neck[k].phase != NeckPhase::loose;
-    if (!necked) {
-      if constexpr (with_friction) c.list.tangential[k].setZero();
-      sink.skip(k);
-      return;
-    }
+  bool necked = false;
+  if constexpr (has_necks<Law>) necked = c.list.neck[k].phase != NeckPhase::loose;
+  if (d2 >= reach * reach && !necked) {
+    if constexpr (with_friction) c.list.tangential[k].setZero();
+    sink.skip(k);
+    return;
   }
   const double d = std::sqrt(d2);
   const Vec3 n = branch / d;
@@ -101,8 +109,8 @@ inline void one_pair(const BucketContext<Law>& c, Sink& sink, std::size_t k) {
   in.rate = vn;
   if (c.growth_a != 0 || c.growth_b != 0) {
     const bool swapped = c.material[i] != c.material_a;
-    const double grown = (swapped ? c.growth_b : c.growth_a) * a.radius + (swapped ? c.growth_a : c.growth_b) * b.radius;
-    if (c.clock.step > 0) in.rate -= grown / c.clock.step;
+    const double of_i = swapped ? c.growth_b : c.growth_a, of_j = swapped ? c.growth_a : c.growth_b;
+    if (c.clock.step > 0) in.rate -= thermal_growth(a, b, in.overlap, of_i, of_j, necked) / c.clock.step;
   }
   const double product = a.radius * b.radius / reach;
   in.elastic_radius = c.model.hertz_radius == HertzRadius::equivalent ? 2 * product : product;
@@ -130,8 +138,12 @@ inline void one_pair(const BucketContext<Law>& c, Sink& sink, std::size_t k) {
     Vec3& slip = c.list.tangential[k];
     if (share > 0) {
       const Vec3 spin = result.lever_i * (*c.angular_velocity)[i] + result.lever_j * (*c.angular_velocity)[j];
-      const TangentialInput t{n, v - vn * n - spin.cross(n), share * std::max(0.0, f.sintering - f.total),
-                              spring_of(c.law).tangent(in.overlap, in.elastic_radius), in.reduced_mass, in.step};
+      const TangentialInput t{n,
+                              v - vn * n - spin.cross(n),
+                              share * std::max(0.0, f.sintering - f.total),
+                              spring_of(c.law).tangent(in.overlap, in.elastic_radius),
+                              in.reduced_mass,
+                              in.step};
       const Vec3 ft = coulomb(*c.model.friction, c.model.friction->coefficient, t, slip);
       result.force += ft;
       result.couple = n.cross(ft);
@@ -188,8 +200,10 @@ void ForcePass::gather(Particles& particles, const ContactList&) {
     for (std::size_t q = incidence_begin_[std::size_t(p)]; q < incidence_begin_[std::size_t(p) + 1]; ++q) {
       const ContactRecord& c = scratch_[incidence_[q] >> 1];
       const bool second = incidence_[q] & 1;
-      if (second) force -= c.force;
-      else force += c.force;
+      if (second)
+        force -= c.force;
+      else
+        force += c.force;
       if (rotates) torque += (second ? c.lever_j : c.lever_i) * c.couple;
     }
     particles.force[std::size_t(p)] = force;
@@ -213,20 +227,36 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
     const PairProperties& row = table.row(bucket.material_a, bucket.material_b);
     auto with_law = [&](const auto& law) {
       using Law = std::decay_t<decltype(law)>;
-      const BucketContext<Law> context{law, model_, particles.body, &particles.angular_velocity, list, shifts,
-                                       cell.velocity_gradient, deforming, expansion_step[bucket.material_a],
-                                       expansion_step[bucket.material_b], bucket.material_a, particles.material, clock};
+      const BucketContext<Law> context{law,
+                                       model_,
+                                       particles.body,
+                                       &particles.angular_velocity,
+                                       list,
+                                       shifts,
+                                       cell.velocity_gradient,
+                                       deforming,
+                                       expansion_step[bucket.material_a],
+                                       expansion_step[bucket.material_b],
+                                       bucket.material_a,
+                                       particles.material,
+                                       clock};
       auto with_sink = [&](auto&& sink) {
-        if (model_.friction) run<true>(context, bucket, sink, threads_);
-        else run<false>(context, bucket, sink, threads_);
+        if (model_.friction)
+          run<true>(context, bucket, sink, threads_);
+        else
+          run<false>(context, bucket, sink, threads_);
       };
-      if (target) with_sink(RecordSink{*target});
-      else with_sink(DirectSink{particles});
+      if (target)
+        with_sink(RecordSink{*target});
+      else
+        with_sink(DirectSink{particles});
     };
     with_spring(model_, row, [&](const auto& spring) {
       using Spring = std::decay_t<decltype(spring)>;
-      if (list.neck.empty()) with_law(KelvinVoigt<Spring>{spring, model_.damping_ratio});
-      else with_law(make_sintering<Spring>(model_, row));
+      if (list.neck.empty())
+        with_law(KelvinVoigt<Spring>{spring, model_.damping_ratio});
+      else
+        with_law(make_sintering<Spring>(model_, row));
     });
   }
 
@@ -236,8 +266,10 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
   } else if (record) {
     DirectSink sink{particles};
     for (std::size_t k = 0; k < list.size(); ++k) {
-      if (model_.friction) sink.add<true>(k, list.i(k), list.j(k), (*record)[k]);
-      else sink.add<false>(k, list.i(k), list.j(k), (*record)[k]);
+      if (model_.friction)
+        sink.add<true>(k, list.i(k), list.j(k), (*record)[k]);
+      else
+        sink.add<false>(k, list.i(k), list.j(k), (*record)[k]);
     }
   }
 }
@@ -256,10 +288,11 @@ NormalInput normal_input(const ContactModel& model, const Particles& particles, 
   const double d = branch.norm();
   Vec3 v = b.velocity - a.velocity;
   if (cell.periodic) v += cell.velocity_gradient * branch;
-  const double grown =
-      expansion_step[particles.material[i]] * a.radius + expansion_step[particles.material[j]] * b.radius;
   NormalInput in;
   in.overlap = d - a.radius - b.radius;
+  const bool necked = !list.neck.empty() && list.neck[k].phase != NeckPhase::loose;
+  const double grown = thermal_growth(a, b, in.overlap, expansion_step[particles.material[i]],
+                                      expansion_step[particles.material[j]], necked);
   in.rate = v.dot(branch) / d - (clock.step > 0 ? grown / clock.step : 0.0);
   in.elastic_radius = elastic_radius(model, a.radius, b.radius);
   in.sintering_radius = model.sintering ? sintering_radius(model.sintering->radius, a.radius, b.radius) : 0;
