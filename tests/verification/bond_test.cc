@@ -39,14 +39,6 @@ struct Cycle {
   double strain;                 ///< of the hot body, from its radius of gyration
 };
 
-double gyration(const Particles& p) {
-  Vec3 mean = Vec3::Zero();
-  for (const auto& b : p.body) mean += b.position / double(p.size());
-  double sum = 0;
-  for (const auto& b : p.body) sum += (b.position - mean).squaredNorm();
-  return std::sqrt(sum);
-}
-
 /// Heats a free bonded body slowly, rests, cools, rests.
 Cycle heat(dem::Elasticity elasticity, const std::function<void(Setup&)>& fill, int steps) {
   auto at = [&](double t) {
