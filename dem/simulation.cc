@@ -240,13 +240,32 @@ double Simulation::choose_step() {
 }
 
 void Simulation::evaluate(Recording* record) {
+  take_back_evaluation();
+  before_evaluation_ = state_;  // a pass advances the histories of the contacts by the last step, once
+  forces_now(record);
+}
+
+void Simulation::take_back_evaluation() {
+  if (!before_evaluation_) return;
+  State before = std::move(*before_evaluation_);
+  before_evaluation_.reset();
+  restore(std::move(before));
+}
+
+State& Simulation::mutable_state() {
+  take_back_evaluation();
+  return state_;
+}
+
+void Simulation::forces_now(Recording* record) {
   set_environment();
   keep_list_fresh();
   compute_forces(record);
 }
 
 void Simulation::advance(Recording* record) {
-  evaluate(record);
+  take_back_evaluation();
+  forces_now(record);
   const double step = choose_step();
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   kick(state_.particles, kick_step, setup_.integration.drag, setup_.integration.threads);
@@ -277,6 +296,7 @@ bool Simulation::all_at_equilibrium() const {
 }
 
 void Simulation::restore(State state) {
+  before_evaluation_.reset();
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
   const double since_time = state_.time - state_.last_step;

@@ -87,7 +87,8 @@ class Simulation {
   /// One step.  With `record` given it first fills it with the forces at the present time; the trajectory is the same
   /// with and without.  Throws RunError when the state is no longer sound.
   void advance(Recording* record);
-  /// Forces at the present time without moving on: for the last row of a run.
+  /// Forces at the present time without moving on: for a measure between steps and for the last row of a run.  `state()`
+  /// then shows the evaluated state; the next `advance` starts from the state before, so that looking changes nothing.
   void evaluate(Recording* record);
 
   bool finished() const { return state_.time >= setup_.schedule.end(); }
@@ -99,7 +100,8 @@ class Simulation {
   const PairTable& table() const { return table_; }
   /// Replaces the state by a checkpoint's.
   void restore(State state);
-  State& mutable_state() { return state_; }
+  /// For owners that change the state between steps; takes back an `evaluate`.
+  State& mutable_state();
 
   double temperature() const { return setup_.schedule.temperature(state_.time); }
   double pressure() const { return setup_.schedule.pressure(state_.time); }
@@ -112,6 +114,8 @@ class Simulation {
   std::size_t contacts_now() const;        ///< touching or necked pairs
 
  private:
+  void forces_now(Recording* record);
+  void take_back_evaluation();
   void set_environment();
   void keep_list_fresh();
   void compute_forces(Recording* record);
@@ -124,6 +128,7 @@ class Simulation {
   State state_;
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
+  std::optional<State> before_evaluation_;
 };
 
 }  // namespace densify::dem
