@@ -51,6 +51,7 @@ lacks() { ! grep -qe "$2" "$scratch/$1" || fail "'$2' in $1"; }
 # Nothing may be installed: names what is missing, touches nothing, exit code 2.
 DENSIFY_NO_INSTALL=1 call 2 run scene.toml
 holds err 'missing Debian packages: g++ cmake ninja-build libeigen3-dev'
+holds err 'DENSIFY_NO_INSTALL forbids'
 [ ! -s "$calls" ] || fail "something was called"
 
 # One package is there: lists read once, before the others are installed, which are announced; the tests' are not among
