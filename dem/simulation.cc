@@ -241,8 +241,7 @@ void Simulation::evaluate(Recording* record) {
   compute_forces(record);
 }
 
-void Simulation::advance(Recording* record) {
-  evaluate(record);
+void Simulation::move() {
   const double step = choose_step();
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   kick(state_.particles, kick_step, setup_.integration.drag, setup_.integration.threads);

@@ -84,11 +84,16 @@ class Simulation {
   /// Throws InputError when the setup is inconsistent (missing property, particle outside its container, ...).
   explicit Simulation(Setup setup);
 
-  /// One step.  With `record` given it first fills it with the forces at the present time; the trajectory is the same
-  /// with and without.  Throws RunError when the state is no longer sound.
-  void advance(Recording* record);
-  /// Forces at the present time without moving on: for the last row of a run.
+  /// First half of a step: environment, lists and forces at the present time.  With `record` given it also fills it;
+  /// the trajectory is the same with and without.  Once a step, since histories advance.  Throws RunError when the state
+  /// is no longer sound.
   void evaluate(Recording* record);
+  /// Second half of a step: chooses its length and moves particles, punch and cell.
+  void move();
+  void advance() {
+    evaluate(nullptr);
+    move();
+  }
 
   bool finished() const { return state_.time >= setup_.schedule.end(); }
   /// True when every neck of a packing that has necks is at equilibrium.

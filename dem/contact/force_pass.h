@@ -19,6 +19,7 @@ struct ContactRecord {
   double lever_i = 0, lever_j = 0;  ///< centre to contact point [m]
   double normal = 0;           ///< normal force, tension positive [N]
   double sintering = 0;        ///< F_sint in it [N]
+  double damping = 0;          ///< damper force in it [N]
   double elastic_energy = 0;   ///< stored in the normal spring [J]
   bool touching = false;
 };
