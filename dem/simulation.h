@@ -105,6 +105,7 @@ class Simulation {
   /// Replaces the state by a checkpoint's.
   void restore(State state);
   State& mutable_state() { return state_; }
+  void set_gravity(const Vec3& g) { setup_.integration.gravity = g; }
 
   double temperature() const { return setup_.schedule.temperature(state_.time); }
   double pressure() const { return setup_.schedule.pressure(state_.time); }
