@@ -26,7 +26,7 @@ constexpr int max_levels = 14;          // sizes down to d_max / 8192; smaller o
 /// One attempt in a container of given size.
 class Trial {
  public:
-  Trial(std::span<const double> diameters, const Vec3& extent, const Container& container, std::uint64_t seed);
+  Trial(std::span<const double> diameters, const Vec3& extent, const PlacementContainer& container, std::uint64_t seed);
   /// Places `order` one after the other; false when one finds no place.
   bool place(std::span<const std::uint32_t> order);
   std::vector<Vec3> position;
@@ -49,7 +49,7 @@ class Trial {
   Random random_;
 };
 
-Trial::Trial(std::span<const double> diameters, const Vec3& extent, const Container& container, std::uint64_t seed)
+Trial::Trial(std::span<const double> diameters, const Vec3& extent, const PlacementContainer& container, std::uint64_t seed)
     : position(diameters.size()), diameters_(diameters), cylinder_radius_(HUGE_VAL), random_(seed) {
   const double d_max = *std::max_element(diameters.begin(), diameters.end());
   lower_ = Vec3::Zero();
@@ -106,12 +106,12 @@ bool Trial::meets_larger(std::uint32_t particle, const Vec3& x, const Cell3& cel
 }
 
 /// Part of the box around the container that the container fills [-].
-double filling(const Container& container) {
+double filling(const PlacementContainer& container) {
   return std::holds_alternative<CylinderContainer>(container) ? std::numbers::pi / 4 : 1;
 }
 
 /// The box around a container of the given volume; no edge is shorter than the largest particle needs [m].
-Vec3 extent_of(const Container& container, double volume, double d_max) {
+Vec3 extent_of(const PlacementContainer& container, double volume, double d_max) {
   if (const auto* periodic = std::get_if<PeriodicContainer>(&container)) {
     const Vec3& p = periodic->proportions;
     return p * std::max(std::cbrt(volume / p.prod()), cell_width * d_max / p.minCoeff());
@@ -122,7 +122,7 @@ Vec3 extent_of(const Container& container, double volume, double d_max) {
   return {x, y, std::max(volume / (x * y * filling(container)), cell_width * d_max)};
 }
 
-void check(std::span<const double> diameters, const Container& container) {
+void check(std::span<const double> diameters, const PlacementContainer& container) {
   if (diameters.empty()) refuse("the powder is empty: there is no particle to place");
   for (double d : diameters) {
     if (!(d > 0 && std::isfinite(d))) refuse("particle diameters must be above zero and finite; one is ", d, " m");
@@ -142,7 +142,7 @@ void check(std::span<const double> diameters, const Container& container) {
 
 }  // namespace
 
-Placement place_loosely(std::span<const double> diameters, const Container& container, std::uint64_t seed) {
+Placement place_loosely(std::span<const double> diameters, const PlacementContainer& container, std::uint64_t seed) {
   check(diameters, container);
   std::vector<std::uint32_t> order(diameters.size());
   std::iota(order.begin(), order.end(), 0);

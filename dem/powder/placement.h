@@ -25,7 +25,7 @@ struct PeriodicContainer {
   Vec3 proportions;  ///< edges in any common unit [-]
 };
 
-using Container = std::variant<CylinderContainer, BoxContainer, PeriodicContainer>;
+using PlacementContainer = std::variant<CylinderContainer, BoxContainer, PeriodicContainer>;
 
 struct Placement {
   std::vector<Vec3> position;  ///< in the order of the diameters [m]
@@ -39,6 +39,6 @@ struct Placement {
 /// place in a random cell where it meets no larger particle.  The container grows until all have found a place.
 /// @param diameters  [m]
 /// @throws InputError  when there are none, one is not positive, or the largest is wider than the container
-Placement place_loosely(std::span<const double> diameters, const Container& container, std::uint64_t seed);
+Placement place_loosely(std::span<const double> diameters, const PlacementContainer& container, std::uint64_t seed);
 
 }  // namespace densify::dem

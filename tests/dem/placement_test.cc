@@ -110,7 +110,7 @@ TEST(Placement, IsUniformOverTheHeight) {
 
 TEST(Placement, SeedDecides) {
   const auto d = draw(nial, 200, 1);
-  const Container box = PeriodicContainer{Vec3(1, 1, 1)};
+  const PlacementContainer box = PeriodicContainer{Vec3(1, 1, 1)};
   EXPECT_EQ(place_loosely(d, box, 1).position, place_loosely(d, box, 1).position);
   EXPECT_NE(place_loosely(d, box, 1).position, place_loosely(d, box, 2).position);
 }

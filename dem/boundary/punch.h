@@ -1,0 +1,39 @@
+#pragma once
+// The load-controlled punch: a plane with a fictitious mass and a damper of its own.
+
+#include <cmath>
+#include <numbers>
+
+namespace densify::dem {
+
+struct PunchSettings {
+  double mass_fraction = 0.2;   ///< fictitious mass over the scaled mass of the powder
+  double damping_ratio = 0.3;   ///< of the critical damping against its contacts' stiffness
+};
+
+/// m dv/dt = F_powder - p A - c (v - v_mean).  The damper acts against the running mean of the velocity over some ten
+/// periods, so that it stills vibration and takes no share of the load while the powder densifies.
+struct Punch {
+  double mass = 0;           ///< 0 = no moving punch [kg]
+  double area = 0;           ///< A [m^2]
+  double damping = 0;        ///< c [N s/m]
+  double memory = 0;         ///< time constant of the running mean [s]
+  double velocity = 0;       ///< outward positive [m/s]
+  double mean_velocity = 0;  ///< [m/s]
+
+  /// New stiffness sum of the contacts [N/m]; without any contact the last damper stays.
+  void tune(double stiffness, double damping_ratio) {
+    if (stiffness <= 0) return;
+    damping = 2 * damping_ratio * std::sqrt(mass * stiffness);
+    constexpr double periods = 10;
+    memory = periods * 2 * std::numbers::pi * std::sqrt(mass / stiffness);
+  }
+
+  /// Leap-frog kick under the powder's outward force and the applied pressure [N, Pa, s].
+  void kick(double powder_force, double pressure, double step) {
+    velocity += (powder_force - pressure * area - damping * (velocity - mean_velocity)) / mass * step;
+    if (memory > 0) mean_velocity += (velocity - mean_velocity) * step / (memory + step);
+  }
+};
+
+}  // namespace densify::dem

@@ -1,0 +1,146 @@
+#include "dem/boundary/walls.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "base/check.h"
+#include "dem/law/friction.h"
+
+namespace densify::dem {
+
+double Walls::gap(const Wall& w, const Vec3& x, Vec3& toward_wall) {
+  if (w.shape == WallShape::plane) {
+    toward_wall = -w.normal;
+    return (x - w.point).dot(w.normal);
+  }
+  const Vec3 r(x[0] - w.point[0], x[1] - w.point[1], 0);
+  const double rho = r.norm();
+  toward_wall = rho > 0 ? Vec3(r / rho) : Vec3(Vec3::UnitX());
+  return w.radius - rho;
+}
+
+void Walls::rebuild(const Particles& particles, double skin) {
+  std::vector<WallContact> fresh;
+  Vec3 n;
+  for (std::size_t w = 0; w < wall.size(); ++w)
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+      const double g = gap(wall[w], particles.body[p].position, n);
+      if (g < 0)
+        throw RunError("particle " + std::to_string(particles.id[p]) + " has left the " + wall[w].name +
+                       ": its centre is beyond the wall; the step or the mass factor is too large, or the wall too soft");
+      if (g < particles.body[p].radius + skin) fresh.push_back({std::uint32_t(p), std::uint8_t(w), Vec3::Zero()});
+    }
+  auto less = [](const WallContact& a, const WallContact& b) {
+    return a.wall != b.wall ? a.wall < b.wall : a.particle < b.particle;
+  };
+  for (auto& c : fresh) {  // both lists are sorted by (wall, particle)
+    const auto old = std::lower_bound(contacts_.begin(), contacts_.end(), c, less);
+    if (old != contacts_.end() && old->wall == c.wall && old->particle == c.particle) c.tangential = old->tangential;
+  }
+  contacts_ = std::move(fresh);
+  reference_ = wall;
+}
+
+double Walls::age(double skin) const {
+  double moved = 0;
+  for (std::size_t w = 0; w < wall.size(); ++w)
+    moved = std::max({moved, std::abs((wall[w].point - reference_[w].point).dot(wall[w].normal)),
+                      std::abs(wall[w].radius - reference_[w].radius)});
+  return 2 * moved / skin;
+}
+
+double Walls::modulus(const PairTable& table, const ContactModel& model, std::uint8_t material) const {
+  // The pair row holds (4/3) E* of two like particles; a wall replaces one of them by its own compliance.
+  const double like = table.row(material, material).four_thirds_modulus;
+  if (std::isnan(material_.youngs_modulus)) return 2 * like;
+  const double one = 4.0 / 3 * model.stiffness_factor / (2 * like);  // (1 - nu^2)/E of the particle
+  const double wall_compliance = (1 - material_.poissons_ratio * material_.poissons_ratio) / material_.youngs_modulus;
+  return 4.0 / 3 * model.stiffness_factor / (one + wall_compliance);
+}
+
+namespace {
+
+template <class Visit>
+void with_wall_law(const ContactModel& model, double modulus, Visit&& visit) {
+  if (model.elasticity == Elasticity::linear)
+    visit(KelvinVoigt<LinearSpring>{{model.normal_stiffness}, model.damping_ratio});
+  else visit(KelvinVoigt<HertzSpring>{{modulus, 0.0}, model.damping_ratio});
+}
+
+NormalInput wall_input(const Body& b, double gap, double rate, PassTime clock) {
+  NormalInput in;
+  in.overlap = gap - b.radius;
+  in.rate = rate;
+  in.elastic_radius = b.radius;
+  in.sintering_radius = 0;
+  in.reduced_mass = 1 / b.inverse_mass;
+  in.step = clock.step;
+  in.time = clock.time;
+  return in;
+}
+
+}  // namespace
+
+void Walls::compute(Particles& particles, const PairTable& table, const ContactModel& model,
+                    const std::vector<double>& expansion_step, PassTime clock, std::vector<WallRecord>* record) {
+  force_.assign(wall.size(), Vec3::Zero());
+  normal_force_.assign(wall.size(), 0);
+  if (record) record->clear();
+  std::vector<double> moduli(table.materials());
+  for (std::size_t m = 0; m < moduli.size(); ++m) moduli[m] = modulus(table, model, std::uint8_t(m));
+  Vec3 n;
+  for (auto& c : contacts_) {
+    const Wall& w = wall[c.wall];
+    const Body& b = particles.body[c.particle];
+    const double g = gap(w, b.position, n);
+    if (g >= b.radius) {
+      c.tangential.setZero();
+      continue;
+    }
+    const Vec3 wall_velocity = w.shape == WallShape::plane ? w.velocity : Vec3(w.radius_rate * n);
+    const Vec3 v = wall_velocity - b.velocity;
+    const double vn = v.dot(n);
+    const std::uint8_t m = particles.material[c.particle];
+    const double growth = clock.step > 0 ? expansion_step[m] * b.radius / clock.step : 0.0;
+    const NormalInput in = wall_input(b, g, vn - growth, clock);
+    with_wall_law(model, moduli[m], [&](const auto& law) {
+      const double fn = law.update(in).total;
+      Vec3 f = fn * n;
+      if (model.friction) {
+        const double lever = g;
+        const Vec3 spin = lever * particles.angular_velocity[c.particle];
+        const TangentialInput t{n,  v - vn * n - spin.cross(n), std::max(0.0, -fn), law.spring.tangent(in.overlap, in.elastic_radius),
+                                in.reduced_mass, clock.step};
+        const Vec3 ft = coulomb(*model.friction, model.friction->wall_coefficient, t, c.tangential);
+        f += ft;
+        particles.torque[c.particle] += lever * n.cross(ft);
+      }
+      particles.force[c.particle] += f;
+      force_[c.wall] -= f;
+      normal_force_[c.wall] -= fn;
+      if (record) record->push_back({c.particle, c.wall, f, g * n, law.spring.energy(in.overlap, in.elastic_radius)});
+    });
+  }
+}
+
+void Walls::add_stiffness(const Particles& particles, const PairTable& table, const ContactModel& model,
+                          std::vector<double>& stiffness, std::vector<double>& damping) {
+  stiffness_.assign(wall.size(), 0);
+  damping_.assign(wall.size(), 0);
+  Vec3 n;
+  for (const auto& c : contacts_) {
+    const Body& b = particles.body[c.particle];
+    const double g = gap(wall[c.wall], b.position, n);
+    if (g >= b.radius) continue;
+    const NormalInput in = wall_input(b, g, 0, {0, 0});
+    with_wall_law(model, modulus(table, model, particles.material[c.particle]), [&](const auto& law) {
+      const Linearisation l = law.linearise(in);
+      stiffness[c.particle] += l.stiffness;
+      damping[c.particle] += l.damper;
+      stiffness_[c.wall] += l.stiffness;
+      damping_[c.wall] += l.damper;
+    });
+  }
+}
+
+}  // namespace densify::dem

@@ -1,0 +1,93 @@
+#pragma once
+// Rigid walls: planes and an upright cylinder, with contacts of the loose law and friction but no necks (Hertz with the
+// particle's own radius and the effective modulus of particle and wall).
+
+#include "dem/contact/force_pass.h"
+
+namespace densify::dem {
+
+enum class WallShape : std::uint8_t { plane, cylinder };
+
+/// One rigid wall.  A plane keeps particles on the side its normal points to; a cylinder about the z axis keeps them
+/// inside.
+struct Wall {
+  std::string name;
+  WallShape shape = WallShape::plane;
+  Vec3 point = Vec3::Zero();     ///< on the plane, or on the cylinder's axis [m]
+  Vec3 normal = Vec3::UnitZ();   ///< of a plane, into the powder
+  double radius = 0;             ///< of a cylinder [m]
+  Vec3 velocity = Vec3::Zero();  ///< of a plane [m/s]
+  double radius_rate = 0;        ///< of a cylinder [m/s]
+};
+
+/// What walls are made of.
+struct WallMaterial {
+  double youngs_modulus = unset;   ///< [Pa]; unset: rigid against the particle's own modulus
+  double poissons_ratio = unset;
+};
+
+/// One particle near one wall.
+struct WallContact {
+  std::uint32_t particle;
+  std::uint8_t wall;
+  Vec3 tangential = Vec3::Zero();  ///< friction spring [m]
+};
+
+/// What one wall contact did in a recorded pass.
+struct WallRecord {
+  std::uint32_t particle;
+  std::uint8_t wall;
+  Vec3 force;    ///< on the particle [N]
+  Vec3 branch;   ///< from the particle's centre to the contact point [m]
+  double elastic_energy;  ///< [J]
+};
+
+class Walls {
+ public:
+  Walls() = default;
+  Walls(std::vector<Wall> walls, WallMaterial material) : wall(std::move(walls)), material_(material) {}
+
+  std::vector<Wall> wall;
+
+  /// Signed gap of a centre to the wall's surface (negative outside) [m] and the unit normal from centre to wall.
+  static double gap(const Wall&, const Vec3& x, Vec3& toward_wall);
+
+  /// Lists the particles within `skin` of each wall; carries friction springs over.
+  /// Throws RunError when a particle's centre is beyond a wall.
+  void rebuild(const Particles&, double skin);
+
+  /// Adds the wall forces to the particles and sums them per wall.
+  void compute(Particles&, const PairTable&, const ContactModel&, const std::vector<double>& expansion_step, PassTime,
+               std::vector<WallRecord>* record);
+
+  /// Share of the skin that wall motion since the last rebuild has used up, on its own.
+  double age(double skin) const;
+
+  /// Resultant of all particles on each wall [N].
+  const std::vector<Vec3>& force() const { return force_; }
+  /// Sum of the normal force components on each wall, pushing outward positive [N].
+  const std::vector<double>& normal_force() const { return normal_force_; }
+  /// Sum of tangent stiffness over each wall's contacts in the last call of `add_stiffness` [N/m].
+  const std::vector<double>& stiffness() const { return stiffness_; }
+  const std::vector<double>& damping() const { return damping_; }
+
+  /// Adds stiffness and damping of the wall contacts to the particles' sums, for the time step limit.
+  void add_stiffness(const Particles&, const PairTable&, const ContactModel&, std::vector<double>& stiffness,
+                     std::vector<double>& damping);
+
+  std::vector<WallContact>& contacts() { return contacts_; }
+  const std::vector<WallContact>& contacts() const { return contacts_; }
+  std::vector<Wall>& reference() { return reference_; }
+  const std::vector<Wall>& reference() const { return reference_; }
+
+ private:
+  double modulus(const PairTable&, const ContactModel&, std::uint8_t material) const;
+
+  WallMaterial material_;
+  std::vector<WallContact> contacts_;
+  std::vector<Wall> reference_;  // walls when the contacts were listed
+  std::vector<Vec3> force_;
+  std::vector<double> normal_force_, stiffness_, damping_;
+};
+
+}  // namespace densify::dem

@@ -1,0 +1,150 @@
+#include "dem/contact/contact_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+#include "dem/contact/neighbour_search.h"
+
+namespace densify::dem {
+
+namespace {
+
+using Key = std::uint64_t;
+Key key_of(std::uint32_t i, std::uint32_t j, std::uint8_t image) {
+  return (Key(i) << (ContactList::index_bits + 5)) | (Key(j) << 5) | image;
+}
+
+/// Where the history of a pair was before the rebuild.
+struct Kept {
+  Key key;
+  std::uint32_t place;
+};
+
+std::vector<Eigen::Vector3i> wrap_into_cell(Particles& particles, const Cell& cell) {
+  std::vector<Eigen::Vector3i> moved(particles.size(), Eigen::Vector3i::Zero());
+  const Mat3 to_fraction = cell.h.inverse();
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    Vec3& x = particles.body[p].position;
+    const Vec3 s = to_fraction * (x - cell.origin);
+    for (int k = 0; k < 3; ++k) moved[p][k] = int(std::floor(s[k]));
+    if (moved[p] != Eigen::Vector3i::Zero()) x -= cell.h * moved[p].cast<double>();
+  }
+  return moved;
+}
+
+/// Keys under which pairs with a history will be found in the new list, sorted.
+std::vector<Kept> kept_histories(const ContactList& list, const std::vector<Eigen::Vector3i>& moved) {
+  std::vector<Kept> kept;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const bool necked = !list.neck.empty() && list.neck[k].phase != NeckPhase::loose;
+    const bool sheared = !list.tangential.empty() && !list.tangential[k].isZero(0);
+    if (!necked && !sheared) continue;
+    std::uint8_t image = list.image(k);
+    if (!moved.empty()) {
+      const Eigen::Vector3i n = ImageCode::unpack(image) + moved[list.j(k)] - moved[list.i(k)];
+      if (n.cwiseAbs().maxCoeff() > 1)
+        throw RunError("a contact spans more than one period of the cell (particles " + std::to_string(list.i(k)) +
+                       " and " + std::to_string(list.j(k)) + "); use a larger cell");
+      image = ImageCode::of(n[0], n[1], n[2]);
+    }
+    kept.push_back({key_of(list.i(k), list.j(k), image), std::uint32_t(k)});
+  }
+  std::sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) { return a.key < b.key; });
+  return kept;
+}
+
+}  // namespace
+
+void rebuild(ContactList& list, Particles& particles, const Cell& cell, const std::vector<double>& expansion,
+             HistoryNeeds needs) {
+  if (particles.size() > ContactList::index_mask)
+    throw InputError("powder: more than " + std::to_string(ContactList::index_mask) + " particles are not supported");
+  const auto moved = cell.periodic ? wrap_into_cell(particles, cell) : std::vector<Eigen::Vector3i>{};
+  const auto kept = kept_histories(list, moved);
+
+  std::vector<CandidatePair> pairs;
+  find_pairs(particles.body, cell, list.skin, pairs);
+
+  // Necks that have opened beyond the list's reach stay.
+  auto less = [](const CandidatePair& a, const CandidatePair& b) {
+    return key_of(a.i, a.j, a.image) < key_of(b.i, b.j, b.image);
+  };
+  const std::size_t found = pairs.size();
+  for (const Kept& old : kept) {
+    if (list.neck.empty() || list.neck[old.place].phase == NeckPhase::loose) continue;
+    const CandidatePair pair{list.i(old.place), list.j(old.place), std::uint8_t(old.key & 31)};
+    if (!std::binary_search(pairs.begin(), pairs.begin() + std::ptrdiff_t(found), pair, less)) pairs.push_back(pair);
+  }
+  if (pairs.size() > found) std::sort(pairs.begin(), pairs.end(), less);
+
+  // Buckets by pair of materials, the order inside kept (counting sort).
+  std::size_t materials = 1;
+  for (auto m : particles.material) materials = std::max<std::size_t>(materials, m + 1u);
+  auto bucket_of = [&](const CandidatePair& p) {
+    auto [a, b] = std::minmax(particles.material[p.i], particles.material[p.j]);
+    return a * materials + b;
+  };
+  std::vector<std::size_t> start(materials * materials + 1, 0);
+  for (const auto& p : pairs) ++start[bucket_of(p) + 1];
+  for (std::size_t b = 0; b + 1 < start.size(); ++b) start[b + 1] += start[b];
+
+  ContactList fresh;
+  fresh.first.resize(pairs.size());
+  fresh.second.resize(pairs.size());
+  if (needs.friction) fresh.tangential.assign(pairs.size(), Vec3::Zero());
+  if (needs.necks) fresh.neck.assign(pairs.size(), NeckHistory{});
+  for (std::size_t b = 0; b + 1 < start.size(); ++b)
+    if (start[b + 1] > start[b])
+      fresh.buckets.push_back({start[b], start[b + 1], std::uint8_t(b / materials), std::uint8_t(b % materials)});
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  auto old = kept.begin();
+  for (const auto& p : pairs) {
+    const std::size_t k = next[bucket_of(p)]++;
+    fresh.first[k] = p.i;
+    fresh.second[k] = p.j | std::uint32_t(p.image) << ContactList::index_bits;
+    const Key key = key_of(p.i, p.j, p.image);
+    while (old != kept.end() && old->key < key) ++old;
+    if (old == kept.end() || old->key != key) continue;
+    if (needs.friction && !list.tangential.empty()) fresh.tangential[k] = list.tangential[old->place];
+    if (needs.necks && !list.neck.empty()) fresh.neck[k] = list.neck[old->place];
+  }
+
+  fresh.reference_position.resize(particles.size());
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    fresh.reference_position[p] = particles.body[p].position;
+    fresh.largest_radius = std::max(fresh.largest_radius, particles.body[p].radius);
+  }
+  fresh.reference_h = cell.h;
+  fresh.reference_expansion = expansion;
+  fresh.skin = list.skin;
+  fresh.builds = list.builds + 1;
+  list = std::move(fresh);
+}
+
+double list_age(const ContactList& list, const Particles& particles, const Cell& cell,
+                const std::vector<double>& expansion, int threads) {
+  const std::ptrdiff_t n = std::ptrdiff_t(particles.size());
+  const bool deformed = cell.periodic && cell.h != list.reference_h;
+  const Mat3 f = deformed ? Mat3(cell.h * list.reference_h.inverse()) : Mat3(Mat3::Identity());
+  double furthest = 0;
+  bool finite = true;
+#pragma omp parallel for num_threads(threads) if (threads > 1) reduction(max : furthest) reduction(&& : finite)
+  for (std::ptrdiff_t p = 0; p < n; ++p) {
+    const Vec3& x = particles.body[std::size_t(p)].position;
+    const Vec3& x0 = list.reference_position[std::size_t(p)];
+    const double d2 = deformed ? (x - cell.origin - f * (x0 - cell.origin)).squaredNorm() : (x - x0).squaredNorm();
+    furthest = std::max(furthest, d2);
+    finite = finite && d2 <= std::numeric_limits<double>::max();
+  }
+  if (!finite) return unset;
+  double growth = 0;
+  for (std::size_t m = 0; m < expansion.size(); ++m)
+    growth = std::max(growth, std::abs(expansion[m] / list.reference_expansion[m] - 1));
+  const double strain = deformed ? (f - Mat3::Identity()).norm() : 0;
+  const double reach = 2 * list.largest_radius;
+  return (2 * std::sqrt(furthest) + growth * reach + strain * (reach + list.skin)) / list.skin;
+}
+
+}  // namespace densify::dem

@@ -1,0 +1,95 @@
+#pragma once
+// The contact pass: every contact's law, then the sum over each particle's contacts in one fixed order.
+
+#include "dem/contact/contact_list.h"
+#include "dem/material/pair_table.h"
+
+namespace densify::dem {
+
+/// The clock of one pass.
+struct PassTime {
+  double time;  ///< process time [s]
+  double step;  ///< time since the last pass, 0 at the first [s]
+};
+
+/// What one contact did in a recorded pass; zero for pairs that do not touch.
+struct ContactRecord {
+  Vec3 force = Vec3::Zero();   ///< on particle i [N]
+  Vec3 couple = Vec3::Zero();  ///< n x F_t; times the lever of i or j it is the torque on i or j [N]
+  double lever_i = 0, lever_j = 0;  ///< centre to contact point [m]
+  double normal = 0;           ///< normal force, tension positive [N]
+  double sintering = 0;        ///< F_sint in it [N]
+  double damping = 0;          ///< damper force in it [N]
+  double elastic_energy = 0;   ///< stored in the normal spring [J]
+  bool touching = false;
+};
+
+/// Computes forces (and torques) of all pairs into Particles::force (::torque), overwriting them.
+///
+/// `expansion_step[m]` is the relative growth of the radius of material m since the last pass, (r_new - r_old)/r_new.
+/// With `record` given the pass also fills it, one entry a pair; forces are bit for bit the same with and without it,
+/// and for every number of threads.
+class ForcePass {
+ public:
+  ForcePass(const ContactModel& model, int threads) : model_(model), threads_(threads) {}
+
+  void compute(Particles&, ContactList&, const Cell&, const PairTable&, const std::vector<double>& expansion_step,
+               PassTime, std::vector<ContactRecord>* record);
+
+  /// To be called after every rebuild of the list.
+  void list_changed(const ContactList&, std::size_t particles);
+
+  const ContactModel& model() const { return model_; }
+  int threads() const { return threads_; }
+  std::size_t bytes() const;
+
+ private:
+  void gather(Particles&, const ContactList&);
+
+  ContactModel model_;
+  int threads_;
+  std::vector<ContactRecord> scratch_;    // several threads only
+  std::vector<std::uint32_t> incidence_;  // several threads only: contact << 1 | side, ascending for each particle
+  std::vector<std::size_t> incidence_begin_;
+};
+
+/// The normal law of a bucket at the present temperature, for callers outside the hot loop.
+template <class Spring>
+Spring make_spring(const ContactModel&, const PairProperties&);
+template <>
+inline LinearSpring make_spring(const ContactModel& m, const PairProperties&) {
+  return {m.normal_stiffness};
+}
+template <>
+inline HertzSpring make_spring(const ContactModel& m, const PairProperties& p) {
+  return {p.four_thirds_modulus, m.sintering ? m.sintering->tension_floor : 0.0};
+}
+
+template <class Spring>
+SinteringContact<Spring> make_sintering(const ContactModel& m, const PairProperties& p) {
+  const KelvinVoigt<Spring> loose{make_spring<Spring>(m, p), m.damping_ratio};
+  return {loose, *m.sintering, p.mobility_factor, p.surface_energy, p.cap, p.sine, p.active, p.activation_step};
+}
+
+/// Calls visit(spring) with a value of the spring type that the model asks for.
+template <class Visit>
+decltype(auto) with_spring(const ContactModel& m, const PairProperties& p, Visit&& visit) {
+  return m.elasticity == Elasticity::linear ? visit(make_spring<LinearSpring>(m, p))
+                                            : visit(make_spring<HertzSpring>(m, p));
+}
+
+/// Radius of the Hertz stiffness of two spheres [m].
+inline double elastic_radius(const ContactModel& m, double ri, double rj) {
+  return (m.hertz_radius == HertzRadius::equivalent ? 2 : 1) * ri * rj / (ri + rj);
+}
+
+/// Radius of neck and sintering force of two spheres (4.33) [m].
+inline double sintering_radius(SinteringRadius kind, double ri, double rj) {
+  return kind == SinteringRadius::smaller ? std::min(ri, rj) : 2 * ri * rj / (ri + rj);
+}
+
+/// The input of the normal law of pair k, for callers outside the hot loop (time step limits, network, checks).
+NormalInput normal_input(const ContactModel&, const Particles&, const ContactList&, const Cell&,
+                         const std::vector<double>& expansion_step, PassTime, std::size_t k);
+
+}  // namespace densify::dem

@@ -1,0 +1,37 @@
+#pragma once
+// Regularised Coulomb friction (4.27, 4.28, Fig. 4.6): a tangential spring that slides at mu times the normal force.
+
+#include "dem/law/contact_model.h"
+#include "dem/state/particles.h"
+
+namespace densify::dem {
+
+/// One frictional contact at one step.
+struct TangentialInput {
+  Vec3 normal;              ///< from i to j
+  Vec3 velocity;            ///< v_rT of the contact points, j relative to i (4.27, 4.28) [m/s]
+  double normal_force;      ///< compressive force that friction may lean on, >= 0 [N]
+  double normal_stiffness;  ///< tangent k_n [N/m]
+  double reduced_mass;      ///< [kg]
+  double step;              ///< [s]
+};
+
+/// Tangential force on i [N]; advances the spring displacement `slip` [m], which turns with the contact plane and is cut
+/// back to what the sliding force stretches.
+inline Vec3 coulomb(const FrictionModel& model, double coefficient, const TangentialInput& in, Vec3& slip) {
+  const double k = model.tangential_stiffness_ratio * in.normal_stiffness;
+  const double c = model.tangential_damping_ratio > 0
+                       ? 2 * model.tangential_damping_ratio * std::sqrt(in.reduced_mass * k)
+                       : 0.0;
+  slip += in.velocity * in.step;
+  slip -= slip.dot(in.normal) * in.normal;
+  Vec3 force = k * slip + c * in.velocity;
+  const double limit = coefficient * in.normal_force, size2 = force.squaredNorm();
+  if (size2 > limit * limit) {
+    force *= limit / std::sqrt(size2);
+    if (k > 0) slip = (force - c * in.velocity) / k;
+  }
+  return force;
+}
+
+}  // namespace densify::dem

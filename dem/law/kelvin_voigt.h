@@ -1,0 +1,35 @@
+#pragma once
+// The contact of loose particles: spring and damper in parallel, no tension in the spring (4.14-4.26).
+
+#include <limits>
+
+#include "dem/law/law.h"
+#include "dem/law/springs.h"
+
+namespace densify::dem {
+
+template <class Spring>
+struct KelvinVoigt {
+  Spring spring;
+  double damping_ratio;  ///< xi, of the critical damping (4.24, 4.25) of the tangent stiffness
+
+  /// Damper c = 2 xi sqrt(m k) with the reduced mass and the tangent stiffness (4.24, 4.25) [N s/m].
+  double damper(const NormalInput& in) const {
+    return damping_ratio == 0
+               ? 0.0
+               : 2 * damping_ratio * std::sqrt(in.reduced_mass * spring.tangent(in.overlap, in.elastic_radius));
+  }
+
+  /// Force of an overlapping pair, in.overlap < 0 (4.14, 4.22).
+  NormalForce update(const NormalInput& in) const {
+    return {spring.force(in.overlap, in.elastic_radius) + damper(in) * in.rate, 0};
+  }
+
+  Linearisation linearise(const NormalInput& in) const {
+    if (in.overlap >= 0) return {0, 0, std::numeric_limits<double>::infinity(), 0, 0};
+    return {spring.tangent(in.overlap, in.elastic_radius), damper(in), std::numeric_limits<double>::infinity(), 0,
+            spring.force(in.overlap, in.elastic_radius)};
+  }
+};
+
+}  // namespace densify::dem

@@ -1,0 +1,304 @@
+#include "dem/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "dem/integrate/leapfrog.h"
+
+namespace densify::dem {
+
+namespace {
+
+std::vector<Wall> make_walls(const Container& c) {
+  std::vector<Wall> walls;
+  auto plane = [&](const char* name, const Vec3& point, const Vec3& normal) {
+    walls.push_back({name, WallShape::plane, point, normal, 0, Vec3::Zero(), 0});
+  };
+  switch (c.shape) {
+    case ContainerShape::cylinder:
+      walls.push_back({"die", WallShape::cylinder, Vec3::Zero(), Vec3::UnitZ(), 0.5 * c.size[0], Vec3::Zero(), 0});
+      plane("bottom", Vec3::Zero(), Vec3::UnitZ());
+      plane("punch", Vec3(0, 0, c.size[2]), -Vec3::UnitZ());
+      break;
+    case ContainerShape::box:
+      plane("wall x-", Vec3::Zero(), Vec3::UnitX());
+      plane("wall x+", Vec3(c.size[0], 0, 0), -Vec3::UnitX());
+      plane("wall y-", Vec3::Zero(), Vec3::UnitY());
+      plane("wall y+", Vec3(0, c.size[1], 0), -Vec3::UnitY());
+      plane("bottom", Vec3::Zero(), Vec3::UnitZ());
+      plane("punch", Vec3(0, 0, c.size[2]), -Vec3::UnitZ());
+      break;
+    default: break;
+  }
+  return walls;
+}
+
+double punch_area(const Container& c) {
+  return c.shape == ContainerShape::cylinder ? 0.25 * M_PI * c.size[0] * c.size[0] : c.size[0] * c.size[1];
+}
+
+/// Order of the particles along a grid of about one large particle a cell, so that neighbours are near in memory.
+std::vector<std::uint32_t> spatial_order(const Particles& particles) {
+  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+  double mean = 0;
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    low = low.cwiseMin(particles.body[p].position);
+    high = high.cwiseMax(particles.body[p].position);
+    mean += particles.reference_radius[p] / double(particles.size());
+  }
+  const Vec3 span = (high - low).cwiseMax(mean);
+  const double edge = std::max(4 * mean, span.maxCoeff() / 1000);
+  auto cell_of = [&](std::uint32_t p) {
+    const Vec3 s = (particles.body[p].position - low) / edge;
+    return (std::uint64_t(s[2]) << 40) | (std::uint64_t(s[1]) << 20) | std::uint64_t(s[0]);
+  };
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(particles.size());
+  for (std::uint32_t p = 0; p < keyed.size(); ++p) keyed[p] = {cell_of(p), p};
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<std::uint32_t> order(keyed.size());
+  for (std::size_t p = 0; p < order.size(); ++p) order[p] = keyed[p].second;
+  return order;
+}
+
+template <class T>
+void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
+  if (values.empty()) return;
+  std::vector<T> sorted(values.size());
+  for (std::size_t p = 0; p < order.size(); ++p) sorted[p] = values[order[p]];
+  values = std::move(sorted);
+}
+
+double sphere_volume(double r) { return 4.0 / 3 * M_PI * r * r * r; }
+
+}  // namespace
+
+Simulation::Simulation(Setup setup)
+    : setup_(std::move(setup)),
+      table_(setup_.materials, setup_.interfaces, setup_.contact),
+      pass_(setup_.contact, setup_.integration.threads) {
+  if (setup_.particles.size() == 0) throw InputError("powder: no particles (the powder is empty); give a number of at least 1");
+  Particles& particles = setup_.particles;
+  const auto order = spatial_order(particles);
+  permute(particles.body, order);
+  permute(particles.reference_radius, order);
+  permute(particles.material, order);
+  permute(particles.id, order);
+  permute(particles.angular_velocity, order);
+  for (auto& load : setup_.loads) {
+    const auto found = std::find(particles.id.begin(), particles.id.end(), load.particle);
+    if (found == particles.id.end())
+      throw InputError("load: particle " + std::to_string(load.particle) + " does not exist; the specimen has " +
+                       std::to_string(particles.size()) + ", counted from 0");
+    load.particle = std::uint32_t(found - particles.id.begin());
+  }
+
+  const std::size_t n = particles.size();
+  particles.force.assign(n, Vec3::Zero());
+  if (setup_.contact.friction) {
+    particles.angular_velocity.resize(n, Vec3::Zero());
+    particles.torque.assign(n, Vec3::Zero());
+  } else {
+    particles.angular_velocity.clear();
+  }
+  double mean_radius = 0, powder_mass = 0;
+  for (std::size_t p = 0; p < n; ++p) {
+    const double mass = setup_.materials[particles.material[p]].density * sphere_volume(particles.reference_radius[p]);
+    particles.body[p].inverse_mass = 1 / (setup_.integration.mass_scaling * mass);
+    particles.body[p].radius = particles.reference_radius[p];
+    mean_radius += particles.reference_radius[p] / double(n);
+    powder_mass += mass;
+  }
+  state_.particles = std::move(setup_.particles);
+  setup_.particles = Particles{};
+  state_.cell = setup_.cell;
+  state_.contacts.skin = setup_.integration.skin * mean_radius;
+  state_.expansion.assign(setup_.materials.size(), 1.0);
+  expansion_step_.assign(setup_.materials.size(), 0.0);
+  state_.walls = Walls(make_walls(setup_.container), setup_.container.material);
+  punch_wall_ = wall("punch");
+  if (punch_wall_ && setup_.container.punch) {
+    state_.punch.mass = setup_.container.punch_settings.mass_fraction * setup_.integration.mass_scaling * powder_mass;
+    state_.punch.area = punch_area(setup_.container);
+  }
+  Vec3 unused;
+  for (const auto& w : state_.walls.wall)
+    for (std::size_t p = 0; p < n; ++p)
+      if (Walls::gap(w, state_.particles.body[p].position, unused) < 0)
+        throw InputError("specimen: particle " + std::to_string(state_.particles.id[p]) + " lies outside the container (" +
+                         w.name + "); move it inside or enlarge the container");
+  set_environment();
+  rebuild_lists();
+}
+
+std::optional<std::size_t> Simulation::wall(std::string_view name) const {
+  for (std::size_t w = 0; w < state_.walls.wall.size(); ++w)
+    if (state_.walls.wall[w].name == name) return w;
+  return std::nullopt;
+}
+
+double Simulation::real_mass(std::size_t p) const {
+  return 1 / (state_.particles.body[p].inverse_mass * setup_.integration.mass_scaling);
+}
+
+double Simulation::solid_volume() const {
+  double v = 0;
+  for (double r : state_.particles.reference_radius) v += sphere_volume(r);
+  return v;
+}
+
+void Simulation::set_environment() {
+  const double t = temperature();
+  std::fill(expansion_step_.begin(), expansion_step_.end(), 0.0);
+  // At constant temperature only the clock of an activation that has just begun still matters.
+  const bool changed = t != state_.temperature;
+  if (changed || setup_.contact.sintering) table_.update(t, state_.time);
+  state_.active_since = table_.active_since();
+  if (!changed) return;
+  const double dt = t - setup_.reference_temperature;
+  const double old_dt = std::isnan(state_.temperature) ? 0.0 : state_.temperature - setup_.reference_temperature;
+  bool grows = false;
+  for (std::size_t m = 0; m < setup_.materials.size(); ++m) {
+    const double e = 1 + setup_.materials[m].thermal_expansion * dt;
+    // The first environment sets the radii of the given specimen; growth counts from there.
+    if (!std::isnan(state_.temperature)) expansion_step_[m] = (e - state_.expansion[m]) / e;
+    grows = grows || e != state_.expansion[m];
+    state_.expansion[m] = e;
+  }
+  if (grows)
+    for (std::size_t p = 0; p < state_.particles.size(); ++p)
+      state_.particles.body[p].radius = state_.particles.reference_radius[p] * state_.expansion[state_.particles.material[p]];
+  const double a = setup_.container.wall_expansion;
+  if (a != 0) {
+    const double stretch = (1 + a * dt) / (1 + a * old_dt);
+    for (auto& w : state_.walls.wall) {
+      if (w.shape == WallShape::cylinder) w.radius *= stretch;
+      else if (std::abs(w.normal[2]) < 0.5) w.point *= stretch;  // lateral planes of a box
+    }
+  }
+  state_.temperature = t;
+}
+
+void Simulation::rebuild_lists() {
+  const HistoryNeeds needs{setup_.contact.friction.has_value(),
+                           setup_.contact.sintering && (table_.any_active() || !state_.contacts.neck.empty())};
+  rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs);
+  state_.walls.rebuild(state_.particles, state_.contacts.skin);
+  pass_.list_changed(state_.contacts, state_.particles.size());
+}
+
+void Simulation::keep_list_fresh() {
+  const double age = list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, setup_.integration.threads);
+  if (std::isnan(age)) {
+    for (std::size_t p = 0; p < state_.particles.size(); ++p)
+      if (!state_.particles.body[p].position.allFinite())
+        throw RunError("the position of particle " + std::to_string(state_.particles.id[p]) +
+                       " is no longer finite at process time " + std::to_string(state_.time) +
+                       " s; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
+  }
+  const bool first_necks = setup_.contact.sintering && state_.contacts.neck.empty() && table_.any_active();
+  if (age >= 1 || first_necks || state_.walls.age(state_.contacts.skin) >= 1) rebuild_lists();
+}
+
+void Simulation::compute_forces(Recording* record) {
+  const PassTime clock{state_.time, state_.last_step};
+  pass_.compute(state_.particles, state_.contacts, state_.cell, table_, expansion_step_, clock,
+                record ? &record->contact : nullptr);
+  if (!state_.walls.wall.empty())
+    state_.walls.compute(state_.particles, table_, setup_.contact, expansion_step_, clock,
+                         record ? &record->wall : nullptr);
+  else if (record) record->wall.clear();
+  for (const auto& load : setup_.loads) {
+    const double share = load.ramp > 0 ? std::min(1.0, state_.time / load.ramp) : 1.0;
+    state_.particles.force[load.particle] += share * load.force;
+  }
+  if (!setup_.integration.gravity.isZero(0))
+    for (std::size_t p = 0; p < state_.particles.size(); ++p)
+      state_.particles.force[p] += real_mass(p) * setup_.integration.gravity;
+}
+
+double Simulation::choose_step() {
+  const auto& settings = setup_.integration;
+  if (state_.steps % std::uint64_t(settings.limit_interval) == 0 || state_.stable_step == 0) {
+    const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
+    const StepLimit limit = critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact,
+                                          state_.walls, punch, {state_.time, state_.last_step}, settings.rule);
+    state_.critical_step = limit.critical;
+    state_.stable_step = settings.step_safety * limit.critical;
+    if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
+    if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
+    if (state_.punch.mass > 0) state_.punch.tune(limit.punch_stiffness, setup_.container.punch_settings.damping_ratio);
+  }
+  // Breakpoints of the schedule are met exactly; the last two steps before one share the way.
+  const double left = setup_.schedule.next_breakpoint(state_.time) - state_.time;
+  if (left <= state_.stable_step) return left;
+  return left < 2 * state_.stable_step ? 0.5 * left : state_.stable_step;
+}
+
+void Simulation::evaluate(Recording* record) {
+  set_environment();
+  keep_list_fresh();
+  compute_forces(record);
+}
+
+void Simulation::move() {
+  const double step = choose_step();
+  const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
+  kick(state_.particles, kick_step, setup_.integration.drag, setup_.integration.threads);
+  if (state_.punch.mass > 0) {
+    state_.punch.kick(state_.walls.normal_force()[*punch_wall_], pressure(), kick_step);
+    state_.walls.wall[*punch_wall_].velocity = Vec3(0, 0, state_.punch.velocity);
+  }
+  drift(state_.particles, state_.cell, step, setup_.integration.threads);
+  for (auto& w : state_.walls.wall) {
+    w.point += step * w.velocity;
+    w.radius += step * w.radius_rate;
+  }
+  const double breakpoint = setup_.schedule.next_breakpoint(state_.time);
+  state_.time = state_.time + step >= breakpoint ? breakpoint : state_.time + step;
+  state_.last_step = step;
+  ++state_.steps;
+}
+
+bool Simulation::all_at_equilibrium() const {
+  if (state_.contacts.neck.empty()) return false;
+  bool any = false;
+  for (const auto& h : state_.contacts.neck) {
+    if (h.phase == NeckPhase::loose) continue;
+    if (h.phase != NeckPhase::arriving && h.phase != NeckPhase::bonded) return false;
+    any = true;
+  }
+  return any;
+}
+
+void Simulation::restore(State state) {
+  state_ = std::move(state);
+  table_.active_since() = state_.active_since;
+  const double since_time = state_.time - state_.last_step;
+  if (!std::isnan(state_.temperature)) table_.update(state_.temperature, since_time);
+  pass_.list_changed(state_.contacts, state_.particles.size());
+}
+
+std::size_t Simulation::contacts_now() const {
+  std::size_t count = 0;
+  const auto& list = state_.contacts;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const Body &a = state_.particles.body[list.i(k)], &b = state_.particles.body[list.j(k)];
+    const Vec3 shift = state_.cell.periodic ? state_.cell.shift(list.image(k)) : Vec3(Vec3::Zero());
+    const double reach = a.radius + b.radius;
+    const bool necked = !list.neck.empty() && list.neck[k].phase != NeckPhase::loose;
+    count += necked || (b.position - a.position + shift).squaredNorm() < reach * reach;
+  }
+  return count;
+}
+
+std::size_t Simulation::bytes() const {
+  auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  const Particles& p = state_.particles;
+  const ContactList& c = state_.contacts;
+  return of(p.body) + of(p.reference_radius) + of(p.material) + of(p.id) + of(p.force) + of(p.angular_velocity) +
+         of(p.torque) + of(c.first) + of(c.second) + of(c.tangential) + of(c.neck) + of(c.reference_position) +
+         of(state_.walls.contacts()) + pass_.bytes();
+}
+
+}  // namespace densify::dem
