@@ -71,8 +71,8 @@ TEST(ParticleTable, ReadsCommasAndBlanks) {
 }
 
 TEST(ParticleTable, RefusesMissingFile) {
-  const std::string got = message([] { read_particle_table("/nonexistent/particles.csv", 1); });
-  EXPECT_NE(got.find("/nonexistent/particles.csv: the particle file cannot be read"), got.npos) << got;
+  const std::string got = message([] { read_particle_table("no_such_folder/particles.csv", 1); });
+  EXPECT_NE(got.find("no_such_folder/particles.csv: the particle file cannot be read"), got.npos) << got;
 }
 
 TEST(ParticleTable, RefusesFolder) {
@@ -153,7 +153,7 @@ TEST(LammpsData, ReadsFileWithoutBox) {
 }
 
 TEST(LammpsData, RefusesMissingFile) {
-  EXPECT_NE(message([] { read_lammps_data("/nonexistent/a.data", 1); }).find("cannot be read"), std::string::npos);
+  EXPECT_NE(message([] { read_lammps_data("no_such_folder/a.data", 1); }).find("cannot be read"), std::string::npos);
 }
 TEST(LammpsData, RefusesFileWithoutAtoms) {
   lammps_refused("x,y,z,radius,material\n0,0,0,1,a\n", 0, "no section Atoms");
