@@ -1,0 +1,122 @@
+#include "dem/io/hdf5_file.h"
+
+#include <limits>
+
+#include "base/check.h"
+#include "dem/io/atomic_file.h"
+#include "tests/dem/scratch_folder.h"
+
+using namespace densify;
+using namespace densify::dem;
+using namespace densify::dem::testing;
+
+namespace {
+
+void fill(Hdf5Writer& file) {
+  file.list<double>("/a/deep/numbers", {1.5, -0.0, std::numeric_limits<double>::denorm_min()}, "m");
+  file.list<std::uint8_t>("/a/bytes", {0, 255}, "");
+  file.list<std::uint32_t>("/a/words", {4000000000u}, "");
+  file.list<std::uint64_t>("/a/longs", {18000000000000000000u}, "");
+  file.list<double>("/a/none", {}, "s");
+  file.table("/a/vectors", {Vec3(1, 2, 3), Vec3(4, 5, 6)}, "m/s");
+  file.text("/a/text", "temperature = \"20 °C\"\n");
+  file.texts("/a/texts", {"die", "", "punch"});
+  file.attribute("/a", "time", 0.1);
+  file.attribute("/a", "count", std::uint64_t(7));
+  file.attribute("/", "version", "0.1.0");
+}
+
+}  // namespace
+
+class EveryStorage : public ::testing::TestWithParam<Hdf5Storage> {};
+
+TEST_P(EveryStorage, RoundTrip) {
+  const ScratchFolder folder;
+  {
+    Hdf5Writer file(folder / "f.h5", GetParam());
+    fill(file);
+    EXPECT_FALSE(std::filesystem::exists(folder / "f.h5"));
+    file.commit();
+  }
+  EXPECT_EQ(folder.entries(), 1u);
+  const Hdf5Reader file(folder / "f.h5");
+  const auto numbers = file.read<double>("/a/deep/numbers");
+  EXPECT_EQ(numbers, (std::vector<double>{1.5, 0, std::numeric_limits<double>::denorm_min()}));
+  EXPECT_TRUE(std::signbit(numbers[1]));
+  EXPECT_EQ(file.read<std::uint8_t>("/a/bytes"), (std::vector<std::uint8_t>{0, 255}));
+  EXPECT_EQ(file.read<std::uint32_t>("/a/words"), std::vector<std::uint32_t>{4000000000u});
+  EXPECT_EQ(file.read<std::uint64_t>("/a/longs"), std::vector<std::uint64_t>{18000000000000000000u});
+  EXPECT_TRUE(file.read<double>("/a/none").empty());
+  EXPECT_EQ(file.shape("/a/vectors").rows, 2u);
+  EXPECT_EQ(file.shape("/a/vectors").columns, 3u);
+  EXPECT_EQ(file.read<double>("/a/vectors"), (std::vector<double>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(file.attribute<std::string>("/a/vectors", "unit"), "m/s");
+  EXPECT_EQ(file.text("/a/text"), "temperature = \"20 °C\"\n");
+  EXPECT_EQ(file.texts("/a/texts"), (std::vector<std::string>{"die", "", "punch"}));
+  EXPECT_EQ(file.attribute<double>("/a", "time"), 0.1);
+  EXPECT_EQ(file.attribute<std::uint64_t>("/a", "count"), 7u);
+  EXPECT_EQ(file.attribute<std::string>("/", "version"), "0.1.0");
+  EXPECT_TRUE(file.has("/a/deep"));
+  EXPECT_FALSE(file.has("/a/shallow/numbers"));
+}
+
+TEST_P(EveryStorage, WithoutCommitNothingChanges) {
+  const ScratchFolder folder;
+  write_plainly(folder / "f.h5", "old");
+  {
+    Hdf5Writer file(folder / "f.h5", GetParam());
+    fill(file);
+  }
+  EXPECT_EQ(content_of(folder / "f.h5"), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST_P(EveryStorage, MissingFolderNamed) {
+  const ScratchFolder folder;
+  const auto message = message_of<FileError>([&] {
+    Hdf5Writer file(folder / "nowhere/f.h5", GetParam());
+    file.commit();
+  });
+  EXPECT_NE(message.find("nowhere/f.h5"), std::string::npos) << message;
+  EXPECT_NE(message.find("No such file"), std::string::npos) << message;
+}
+
+// The same content gives the same bytes: no time of writing in the file.
+TEST_P(EveryStorage, Reproducible) {
+  const ScratchFolder folder;
+  for (const char* name : {"f.h5", "g.h5"}) {
+    Hdf5Writer file(folder / name, GetParam());
+    fill(file);
+    file.commit();
+  }
+  EXPECT_EQ(content_of(folder / "f.h5"), content_of(folder / "g.h5"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Hdf5File, EveryStorage, ::testing::Values(Hdf5Storage::memory, Hdf5Storage::disk),
+                         [](const auto& test) { return test.param == Hdf5Storage::memory ? "memory" : "disk"; });
+
+// /dev/full fails every write with ENOSPC.
+TEST(Hdf5File, FullDiskKeepsOldFile) {
+  const ScratchFolder folder;
+  write_plainly(folder / "f.h5", "old");
+  std::filesystem::create_symlink("/dev/full", temporary_beside(folder / "f.h5"));
+  Hdf5Writer file(folder / "f.h5", Hdf5Storage::memory);
+  fill(file);
+  const auto message = message_of<FileError>([&] { file.commit(); });
+  EXPECT_NE(message.find("No space left"), std::string::npos) << message;
+  EXPECT_EQ(content_of(folder / "f.h5"), "old");
+}
+
+TEST(Hdf5File, ReadingMistakesNamed) {
+  const ScratchFolder folder;
+  EXPECT_THROW(Hdf5Reader(folder / "missing.h5"), FileError);
+  write_plainly(folder / "text.h5", "not HDF5 at all");
+  EXPECT_THROW(Hdf5Reader(folder / "text.h5"), FileError);
+  Hdf5Writer writer(folder / "f.h5", Hdf5Storage::memory);
+  fill(writer);
+  const Hdf5Reader file(folder / "f.h5", writer.image());
+  EXPECT_NE(message_of<FileError>([&] { file.read<double>("/a/absent"); }).find("/a/absent"), std::string::npos);
+  EXPECT_THROW(file.read<double>("/a/words"), FileError);
+  EXPECT_THROW(file.attribute<double>("/a", "absent"), FileError);
+  EXPECT_THROW(writer.group("/a/text/below"), FileError);
+}
