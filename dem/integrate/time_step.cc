@@ -13,8 +13,8 @@ constexpr double rotation_factor = 3.5;
 }  // namespace
 
 double node_limit(double mass, double stiffness, double damping) {
-  if (stiffness <= 0) return damping > 0 ? mass / damping : infinity;
-  return (std::sqrt(damping * damping + 2 * stiffness * mass) - damping) / stiffness;
+  // The positive root of the quadratic without the difference that cancels when damping rules.
+  return 2 * mass / (std::sqrt(damping * damping + 2 * stiffness * mass) + damping);
 }
 
 double thesis_limit(const Linearisation& l, double m) {
