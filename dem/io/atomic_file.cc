@@ -91,7 +91,8 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
   return temporary;
 }
 
-void write_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> parts) {
+void write_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> parts,
+                      Durability durability) {
   const auto temporary = temporary_beside(path);
   {
     Descriptor d(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
@@ -100,16 +101,17 @@ void write_atomically(const std::filesystem::path& path, std::initializer_list<s
       if (const int error = detail::write_all(d.number, part)) abandon(temporary, path, error);
     if (const int error = d.close()) abandon(temporary, path, error);
   }
-  replace_atomically(temporary, path);
+  replace_atomically(temporary, path, durability);
 }
 
-void replace_atomically(const std::filesystem::path& temporary, const std::filesystem::path& path) {
-  {
+void replace_atomically(const std::filesystem::path& temporary, const std::filesystem::path& path,
+                        Durability durability) {
+  if (durability == Durability::power_loss) {
     const Descriptor d(::open(temporary.c_str(), O_RDONLY | O_CLOEXEC));
     if (d.number < 0 || ::fsync(d.number) != 0) abandon(temporary, path, errno);
   }
   if (::rename(temporary.c_str(), path.c_str()) != 0) abandon(temporary, path, errno);
-  sync_folder(folder_of(path));
+  if (durability == Durability::power_loss) sync_folder(folder_of(path));
 }
 
 std::string read_whole_file(const std::filesystem::path& path) {

@@ -55,7 +55,7 @@ void write_checkpoint(const std::filesystem::path& path, const Simulation& simul
   file.list("/run/numbers", position.numbers, "");
   write_state(file, simulation.state());
   const std::string image = file.image();
-  write_atomically(path, {header_of(image, checkpoint_format), image});
+  write_atomically(path, {header_of(image, checkpoint_format), image}, Durability::power_loss);
 }
 
 RunPosition read_checkpoint(const std::filesystem::path& path, Simulation& simulation, const CheckpointOwner& owner) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "dem/io/atomic_file.h"
 #include "dem/state/particles.h"
 
 namespace densify::dem {
@@ -111,11 +112,12 @@ class Hdf5Writer {
   /// The bytes of the file as it stands (storage in memory only).
   std::string image();
   /// Puts the file in its place, atomically.
-  void commit();
+  void commit(Durability);
 
  private:
   void write(const std::string& name, const void* values, std::int64_t type, Hdf5Shape, int rank,
              std::string_view unit);
+  void remove_temporary() const;
   void write_attribute(const std::string& object, const std::string& name, std::int64_t type, const void* value);
 
   std::filesystem::path path_;

@@ -1,9 +1,11 @@
 #include "dem/io/hdf5_file.h"
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <limits>
 
 #include "base/check.h"
-#include "dem/io/atomic_file.h"
 #include "tests/dem/scratch_folder.h"
 
 using namespace densify;
@@ -36,7 +38,7 @@ TEST_P(EveryStorage, RoundTrip) {
     Hdf5Writer file(folder / "f.h5", GetParam());
     fill(file);
     EXPECT_FALSE(std::filesystem::exists(folder / "f.h5"));
-    file.commit();
+    file.commit(Durability::power_loss);
   }
   EXPECT_EQ(folder.entries(), 1u);
   const Hdf5Reader file(folder / "f.h5");
@@ -75,7 +77,7 @@ TEST_P(EveryStorage, MissingFolderNamed) {
   const ScratchFolder folder;
   const auto message = message_of<FileError>([&] {
     Hdf5Writer file(folder / "nowhere/f.h5", GetParam());
-    file.commit();
+    file.commit(Durability::power_loss);
   });
   EXPECT_NE(message.find("nowhere/f.h5"), std::string::npos) << message;
   EXPECT_NE(message.find("No such file"), std::string::npos) << message;
@@ -87,25 +89,53 @@ TEST_P(EveryStorage, Reproducible) {
   for (const char* name : {"f.h5", "g.h5"}) {
     Hdf5Writer file(folder / name, GetParam());
     fill(file);
-    file.commit();
+    file.commit(Durability::power_loss);
   }
   EXPECT_EQ(content_of(folder / "f.h5"), content_of(folder / "g.h5"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Hdf5File, EveryStorage, ::testing::Values(Hdf5Storage::memory, Hdf5Storage::disk),
-                         [](const auto& test) { return test.param == Hdf5Storage::memory ? "memory" : "disk"; });
-
 // /dev/full fails every write with ENOSPC.
-TEST(Hdf5File, FullDiskKeepsOldFile) {
+TEST_P(EveryStorage, FullDiskKeepsOldFile) {
   const ScratchFolder folder;
   write_plainly(folder / "f.h5", "old");
   std::filesystem::create_symlink("/dev/full", temporary_beside(folder / "f.h5"));
-  Hdf5Writer file(folder / "f.h5", Hdf5Storage::memory);
-  fill(file);
-  const auto message = message_of<FileError>([&] { file.commit(); });
+  const auto message = message_of<FileError>([&] {
+    Hdf5Writer file(folder / "f.h5", GetParam());
+    fill(file);
+    file.commit(Durability::power_loss);
+  });
   EXPECT_NE(message.find("No space left"), std::string::npos) << message;
   EXPECT_EQ(content_of(folder / "f.h5"), "old");
+  EXPECT_EQ(folder.entries(), 1u);
 }
+
+// The disk fills up halfway, here by a limit on the size of a file; afterwards the library still works.
+TEST_P(EveryStorage, DiskFullHalfwayKeepsOldFile) {
+  const ScratchFolder folder;
+  write_plainly(folder / "f.h5", "old");
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit;
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit tight{100000, limit.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tight), 0);
+  const auto message = message_of<FileError>([&] {
+    Hdf5Writer file(folder / "f.h5", GetParam());
+    for (const char* name : {"/a", "/b", "/c"}) file.list(name, std::vector<double>(100000, 1.0), "m");
+    file.commit(Durability::power_loss);
+  });
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_NE(message.find("File too large"), std::string::npos) << message;
+  EXPECT_EQ(content_of(folder / "f.h5"), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+  Hdf5Writer file(folder / "f.h5", GetParam());
+  fill(file);
+  file.commit(Durability::power_loss);
+  EXPECT_EQ(Hdf5Reader(folder / "f.h5").attribute<double>("/a", "time"), 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Hdf5File, EveryStorage, ::testing::Values(Hdf5Storage::memory, Hdf5Storage::disk),
+                         [](const auto& test) { return test.param == Hdf5Storage::memory ? "memory" : "disk"; });
 
 TEST(Hdf5File, ReadingMistakesNamed) {
   const ScratchFolder folder;
