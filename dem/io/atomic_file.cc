@@ -99,16 +99,8 @@ void write_atomically(const std::filesystem::path& path, std::initializer_list<s
     if (d.number < 0) detail::throw_file_error(path, "write this file", errno);
     for (const auto part : parts)
       if (const int error = detail::write_all(d.number, part)) abandon(temporary, path, error);
+    if (durability == Durability::power_loss && ::fsync(d.number) != 0) abandon(temporary, path, errno);
     if (const int error = d.close()) abandon(temporary, path, error);
-  }
-  replace_atomically(temporary, path, durability);
-}
-
-void replace_atomically(const std::filesystem::path& temporary, const std::filesystem::path& path,
-                        Durability durability) {
-  if (durability == Durability::power_loss) {
-    const Descriptor d(::open(temporary.c_str(), O_RDONLY | O_CLOEXEC));
-    if (d.number < 0 || ::fsync(d.number) != 0) abandon(temporary, path, errno);
   }
   if (::rename(temporary.c_str(), path.c_str()) != 0) abandon(temporary, path, errno);
   if (durability == Durability::power_loss) sync_folder(folder_of(path));

@@ -22,9 +22,6 @@ enum class Durability {
 /// the temporary one removed.
 void write_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> parts, Durability);
 
-/// Moves a finished temporary file to its place.  Throws as write_atomically.
-void replace_atomically(const std::filesystem::path& temporary, const std::filesystem::path& path, Durability);
-
 /// The content of a file.  Throws FileError with path and cause.
 std::string read_whole_file(const std::filesystem::path& path);
 

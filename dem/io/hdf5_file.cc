@@ -166,30 +166,15 @@ template double Hdf5Reader::attribute(const std::string&, const std::string&) co
 template std::uint64_t Hdf5Reader::attribute(const std::string&, const std::string&) const;
 template std::string Hdf5Reader::attribute(const std::string&, const std::string&) const;
 
-Hdf5Writer::Hdf5Writer(std::filesystem::path path, Hdf5Storage storage) : path_(std::move(path)), storage_(storage) {
+Hdf5Writer::Hdf5Writer(std::filesystem::path path) : path_(std::move(path)) {
   silence();
   make_groups_ = Hdf5Id(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(make_groups_.get(), 1);
   no_times_ = Hdf5Id(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(no_times_.get(), false);  // the same content gives the same bytes
-  const bool memory = storage == Hdf5Storage::memory;
-  const Hdf5Id access = memory ? memory_access() : Hdf5Id(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  file_ = Hdf5Id(H5Fcreate(temporary_beside(path_).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
-  if (!file_.valid()) {
-    remove_temporary();
-    fail(path_, "write this file");
-  }
-}
-
-void Hdf5Writer::remove_temporary() const {
-  std::error_code ignored;
-  if (storage_ == Hdf5Storage::disk) std::filesystem::remove(temporary_beside(path_), ignored);
-}
-
-Hdf5Writer::~Hdf5Writer() {
-  if (!file_.valid()) return;
-  file_.reset();
-  remove_temporary();
+  const std::string name = path_.string() + " being written";
+  file_ = Hdf5Id(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, memory_access().get()), H5Fclose);
+  if (!file_.valid()) fail(path_, "write this file");
 }
 
 void Hdf5Writer::group(const std::string& name) {
@@ -283,17 +268,7 @@ std::string Hdf5Writer::image() {
 }
 
 void Hdf5Writer::commit(Durability durability) {
-  if (storage_ == Hdf5Storage::memory) {
-    write_atomically(path_, {image()}, durability);
-    file_.reset();
-    return;
-  }
-  if (H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) < 0) fail(path_, "write this file");
-  if (!file_.reset()) {
-    remove_temporary();
-    fail(path_, "write this file");
-  }
-  replace_atomically(temporary_beside(path_), path_, durability);
+  write_atomically(path_, {image()}, durability);
 }
 
 }  // namespace densify::dem

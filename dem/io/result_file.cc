@@ -106,7 +106,7 @@ ResultFile::ResultFile(std::filesystem::path folder, RunDescription description,
   if (failure)
     throw FileError((folder_ / "snapshots").string() + ": cannot make this folder (" + failure.message() + ")");
   recover_snapshots();
-  write_linked();
+  write_linked(false);
   for (std::uint64_t later = snapshots_; std::filesystem::remove(snapshot_path(later), failure); ++later) {
   }
 }
@@ -125,30 +125,35 @@ void ResultFile::recover_snapshots() const {
     const Hdf5Reader gathered(path());
     if (!gathered.has_own(inside))
       throw InputError(snapshot_path(s).string() + ": this snapshot is missing; start again without --resume");
-    Hdf5Writer file(snapshot_path(s), Hdf5Storage::memory);
+    Hdf5Writer file(snapshot_path(s));
     file.copy(gathered, inside, snapshot_group);
     file.commit(Durability::power_loss);
   }
 }
 
-void ResultFile::write_linked() const {
-  Hdf5Writer file(path(), Hdf5Storage::memory);
-  write_common(file, description_, folder_, false);
+void ResultFile::write_linked(bool complete) const {
+  Hdf5Writer file(path());
+  write_common(file, description_, folder_, complete);
   for (std::uint64_t s = 0; s < snapshots_; ++s)
     file.external_link("/snapshots/" + six_digits(s), "snapshots/" + six_digits(s) + ".h5", snapshot_group);
   file.commit(Durability::kill);
 }
 
 void ResultFile::add_snapshot(const Snapshot& snapshot) {
-  Hdf5Writer file(snapshot_path(snapshots_), Hdf5Storage::memory);
+  Hdf5Writer file(snapshot_path(snapshots_));
   write_snapshot(file, snapshot_group, snapshot);
   file.commit(Durability::power_loss);
   ++snapshots_;
-  write_linked();
+  write_linked(false);
 }
 
-void ResultFile::consolidate() {
-  Hdf5Writer file(path(), Hdf5Storage::disk);
+void ResultFile::consolidate(std::uintmax_t largest) {
+  std::uintmax_t size = 0;
+  std::error_code missing;
+  for (std::uint64_t s = 0; s < snapshots_; ++s)
+    if (const auto bytes = std::filesystem::file_size(snapshot_path(s), missing); !missing) size += bytes;
+  if (size > largest) return write_linked(true);
+  Hdf5Writer file(path());
   write_common(file, description_, folder_, true);
   for (std::uint64_t s = 0; s < snapshots_; ++s)
     file.copy(Hdf5Reader(snapshot_path(s)), snapshot_group, "/snapshots/" + six_digits(s));

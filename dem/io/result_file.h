@@ -24,9 +24,11 @@ class ResultFile {
 
   /// Writes a snapshot and result.h5 with the history so far.  Throws FileError.
   void add_snapshot(const Snapshot&);
-  /// Gathers history and all snapshots in result.h5 and removes the folder of snapshots: the run is complete.
-  /// Throws FileError; all files are then as before.
-  void consolidate();
+  /// The run is complete: gathers history and all snapshots in result.h5 and removes the folder of snapshots; with
+  /// more than `largest` bytes of them they stay in files of their own.  Throws FileError; all files are then as
+  /// before.
+  void consolidate(std::uintmax_t largest);
+  static constexpr std::uintmax_t usual_largest = 512u << 20;  ///< the file is put together in memory [bytes]
 
   std::uint64_t snapshots() const { return snapshots_; }
   std::filesystem::path path() const { return folder_ / "result.h5"; }
@@ -34,7 +36,7 @@ class ResultFile {
  private:
   std::filesystem::path snapshot_path(std::uint64_t) const;
   void recover_snapshots() const;
-  void write_linked() const;
+  void write_linked(bool complete) const;
 
   std::filesystem::path folder_;
   RunDescription description_;

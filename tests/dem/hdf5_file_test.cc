@@ -30,12 +30,10 @@ void fill(Hdf5Writer& file) {
 
 }  // namespace
 
-class EveryStorage : public ::testing::TestWithParam<Hdf5Storage> {};
-
-TEST_P(EveryStorage, RoundTrip) {
+TEST(Hdf5File, RoundTrip) {
   const ScratchFolder folder;
   {
-    Hdf5Writer file(folder / "f.h5", GetParam());
+    Hdf5Writer file(folder / "f.h5");
     fill(file);
     EXPECT_FALSE(std::filesystem::exists(folder / "f.h5"));
     file.commit(Durability::power_loss);
@@ -62,21 +60,21 @@ TEST_P(EveryStorage, RoundTrip) {
   EXPECT_FALSE(file.has("/a/shallow/numbers"));
 }
 
-TEST_P(EveryStorage, WithoutCommitNothingChanges) {
+TEST(Hdf5File, WithoutCommitNothingChanges) {
   const ScratchFolder folder;
   write_plainly(folder / "f.h5", "old");
   {
-    Hdf5Writer file(folder / "f.h5", GetParam());
+    Hdf5Writer file(folder / "f.h5");
     fill(file);
   }
   EXPECT_EQ(content_of(folder / "f.h5"), "old");
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-TEST_P(EveryStorage, MissingFolderNamed) {
+TEST(Hdf5File, MissingFolderNamed) {
   const ScratchFolder folder;
   const auto message = message_of<FileError>([&] {
-    Hdf5Writer file(folder / "nowhere/f.h5", GetParam());
+    Hdf5Writer file(folder / "nowhere/f.h5");
     file.commit(Durability::power_loss);
   });
   EXPECT_NE(message.find("nowhere/f.h5"), std::string::npos) << message;
@@ -84,10 +82,10 @@ TEST_P(EveryStorage, MissingFolderNamed) {
 }
 
 // The same content gives the same bytes: no time of writing in the file.
-TEST_P(EveryStorage, Reproducible) {
+TEST(Hdf5File, Reproducible) {
   const ScratchFolder folder;
   for (const char* name : {"f.h5", "g.h5"}) {
-    Hdf5Writer file(folder / name, GetParam());
+    Hdf5Writer file(folder / name);
     fill(file);
     file.commit(Durability::power_loss);
   }
@@ -95,12 +93,12 @@ TEST_P(EveryStorage, Reproducible) {
 }
 
 // /dev/full fails every write with ENOSPC.
-TEST_P(EveryStorage, FullDiskKeepsOldFile) {
+TEST(Hdf5File, FullDiskKeepsOldFile) {
   const ScratchFolder folder;
   write_plainly(folder / "f.h5", "old");
   std::filesystem::create_symlink("/dev/full", temporary_beside(folder / "f.h5"));
   const auto message = message_of<FileError>([&] {
-    Hdf5Writer file(folder / "f.h5", GetParam());
+    Hdf5Writer file(folder / "f.h5");
     fill(file);
     file.commit(Durability::power_loss);
   });
@@ -110,7 +108,7 @@ TEST_P(EveryStorage, FullDiskKeepsOldFile) {
 }
 
 // The disk fills up halfway, here by a limit on the size of a file; afterwards the library still works.
-TEST_P(EveryStorage, DiskFullHalfwayKeepsOldFile) {
+TEST(Hdf5File, DiskFullHalfwayKeepsOldFile) {
   const ScratchFolder folder;
   write_plainly(folder / "f.h5", "old");
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -119,7 +117,7 @@ TEST_P(EveryStorage, DiskFullHalfwayKeepsOldFile) {
   const rlimit tight{100000, limit.rlim_max};
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tight), 0);
   const auto message = message_of<FileError>([&] {
-    Hdf5Writer file(folder / "f.h5", GetParam());
+    Hdf5Writer file(folder / "f.h5");
     for (const char* name : {"/a", "/b", "/c"}) file.list(name, std::vector<double>(100000, 1.0), "m");
     file.commit(Durability::power_loss);
   });
@@ -128,21 +126,18 @@ TEST_P(EveryStorage, DiskFullHalfwayKeepsOldFile) {
   EXPECT_NE(message.find("File too large"), std::string::npos) << message;
   EXPECT_EQ(content_of(folder / "f.h5"), "old");
   EXPECT_EQ(folder.entries(), 1u);
-  Hdf5Writer file(folder / "f.h5", GetParam());
+  Hdf5Writer file(folder / "f.h5");
   fill(file);
   file.commit(Durability::power_loss);
   EXPECT_EQ(Hdf5Reader(folder / "f.h5").attribute<double>("/a", "time"), 0.1);
 }
-
-INSTANTIATE_TEST_SUITE_P(Hdf5File, EveryStorage, ::testing::Values(Hdf5Storage::memory, Hdf5Storage::disk),
-                         [](const auto& test) { return test.param == Hdf5Storage::memory ? "memory" : "disk"; });
 
 TEST(Hdf5File, ReadingMistakesNamed) {
   const ScratchFolder folder;
   EXPECT_THROW(Hdf5Reader(folder / "missing.h5"), FileError);
   write_plainly(folder / "text.h5", "not HDF5 at all");
   EXPECT_THROW(Hdf5Reader(folder / "text.h5"), FileError);
-  Hdf5Writer writer(folder / "f.h5", Hdf5Storage::memory);
+  Hdf5Writer writer(folder / "f.h5");
   fill(writer);
   const Hdf5Reader file(folder / "f.h5", writer.image());
   EXPECT_NE(message_of<FileError>([&] { file.read<double>("/a/absent"); }).find("/a/absent"), std::string::npos);

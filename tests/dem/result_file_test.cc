@@ -71,7 +71,7 @@ TEST(ResultFile, LinkedThenGathered) {
     for (std::size_t s = 0; s < 3; ++s) expect_equal(file, "/snapshots/" + six_digits(s), shots[s]);
   }
   std::filesystem::copy(folder / "a", folder / "b", std::filesystem::copy_options::recursive);
-  whole.consolidate();
+  whole.consolidate(ResultFile::usual_largest);
   EXPECT_FALSE(std::filesystem::exists(folder / "a/snapshots"));
   const Hdf5Reader file(whole.path());
   EXPECT_EQ(file.attribute<std::uint64_t>("/", "complete"), 1u);
@@ -86,7 +86,7 @@ TEST(ResultFile, LinkedThenGathered) {
   EXPECT_FALSE(Hdf5Reader(resumed.path()).has("/snapshots/000002"));
   EXPECT_FALSE(std::filesystem::exists(folder / "b/snapshots/000002.h5"));
   resumed.add_snapshot(shots[2]);
-  resumed.consolidate();
+  resumed.consolidate(ResultFile::usual_largest);
   EXPECT_EQ(content_of(resumed.path()), content_of(whole.path()));
 }
 
@@ -99,13 +99,27 @@ TEST(ResultFile, ResumeAfterAKillWhileGathering) {
     ResultFile file(folder.path(), description, 0);
     file.add_snapshot(shot);
     file.add_snapshot(shot);
-    file.consolidate();
+    file.consolidate(ResultFile::usual_largest);
   }
   ResultFile file(folder.path(), description, 1);
   expect_equal(Hdf5Reader(file.path()), "/snapshots/000000", shot);
   std::filesystem::remove(folder / "snapshots/000000.h5");
   EXPECT_NE(message_of<InputError>([&] { ResultFile(folder.path(), description, 1); }).find("missing"),
             std::string::npos);
+}
+
+// Results that would not fit into the memory are complete with snapshots in files of their own.
+TEST(ResultFile, LargeResultsStayLinked) {
+  const ScratchFolder folder;
+  Simulation simulation(cylinder_packing(1));
+  const Snapshot shot = shoot(simulation);
+  ResultFile file(folder.path(), description, 0);
+  file.add_snapshot(shot);
+  file.consolidate(1000);
+  const Hdf5Reader read(file.path());
+  EXPECT_EQ(read.attribute<std::uint64_t>("/", "complete"), 1u);
+  EXPECT_FALSE(read.has_own("/snapshots/000000"));
+  expect_equal(read, "/snapshots/000000", shot);
 }
 
 // What a scene leaves out has no array in the file.
