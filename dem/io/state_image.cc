@@ -24,7 +24,7 @@ std::vector<double> flat(const std::vector<Body>& body) {
 
 /// Refuses a state in which something does not fit.
 void require(bool fits, const std::string& what) {
-  if (!fits) throw InputError("the checkpoint does not fit its scene: " + what);
+  if (!fits) throw FileError(what + " does not fit the scene");
 }
 
 std::vector<Vec3> read_vectors(const Hdf5Reader& file, const std::string& name, std::size_t rows) {
