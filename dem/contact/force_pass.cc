@@ -58,20 +58,22 @@ struct BucketContext {
   const Shifts& shifts;
   const Mat3& velocity_gradient;
   bool deforming;
-  double growth_a, growth_b;      // relative growth of the radii of both materials since the last pass
+  double growth_a, growth_b;  // relative growth of the radii of both materials since the last pass
   std::uint8_t material_a;
   const std::vector<std::uint8_t>& material;
   PassTime clock;
 };
 
 template <class Law>
-inline constexpr bool has_necks = !std::is_same_v<Law, KelvinVoigt<LinearSpring>> &&
-                                  !std::is_same_v<Law, KelvinVoigt<HertzSpring>>;
+inline constexpr bool has_necks =
+    !std::is_same_v<Law, KelvinVoigt<LinearSpring>> && !std::is_same_v<Law, KelvinVoigt<HertzSpring>>;
 
 template <class Law>
 const auto& spring_of(const Law& law) {
-  if constexpr (has_necks<Law>) return law.loose.spring;
-  else return law.spring;
+  if constexpr (has_necks<Law>)
+    return law.loose.spring;
+  else
+    return law.spring;
 }
 
 /// Pair k of a bucket.  Uniform features (deforming cell, thermal growth) are branches; law, friction and sink are not.
@@ -101,7 +103,8 @@ inline void one_pair(const BucketContext<Law>& c, Sink& sink, std::size_t k) {
   in.rate = vn;
   if (c.growth_a != 0 || c.growth_b != 0) {
     const bool swapped = c.material[i] != c.material_a;
-    const double grown = (swapped ? c.growth_b : c.growth_a) * a.radius + (swapped ? c.growth_a : c.growth_b) * b.radius;
+    const double grown =
+        (swapped ? c.growth_b : c.growth_a) * a.radius + (swapped ? c.growth_a : c.growth_b) * b.radius;
     if (c.clock.step > 0) in.rate -= grown / c.clock.step;
   }
   const double product = a.radius * b.radius / reach;
@@ -130,8 +133,12 @@ inline void one_pair(const BucketContext<Law>& c, Sink& sink, std::size_t k) {
     Vec3& slip = c.list.tangential[k];
     if (share > 0) {
       const Vec3 spin = result.lever_i * (*c.angular_velocity)[i] + result.lever_j * (*c.angular_velocity)[j];
-      const TangentialInput t{n, v - vn * n - spin.cross(n), share * std::max(0.0, f.sintering - f.total),
-                              spring_of(c.law).tangent(in.overlap, in.elastic_radius), in.reduced_mass, in.step};
+      const TangentialInput t{n,
+                              v - vn * n - spin.cross(n),
+                              share * std::max(0.0, f.sintering - f.total),
+                              spring_of(c.law).tangent(in.overlap, in.elastic_radius),
+                              in.reduced_mass,
+                              in.step};
       const Vec3 ft = coulomb(*c.model.friction, c.model.friction->coefficient, t, slip);
       result.force += ft;
       result.couple = n.cross(ft);
@@ -196,8 +203,10 @@ void ForcePass::gather(Particles& particles, const ContactList&) {
     for (std::size_t q = incidence_begin_[std::size_t(p)]; q < incidence_begin_[std::size_t(p) + 1]; ++q) {
       const ContactRecord& c = scratch_[incidence_[q] >> 1];
       const bool second = incidence_[q] & 1;
-      if (second) force -= c.force;
-      else force += c.force;
+      if (second)
+        force -= c.force;
+      else
+        force += c.force;
       if (rotates) torque += (second ? c.lever_j : c.lever_i) * c.couple;
     }
     particles.force[std::size_t(p)] = force;
@@ -221,20 +230,36 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
     const PairProperties& row = table.row(bucket.material_a, bucket.material_b);
     auto with_law = [&](const auto& law) {
       using Law = std::decay_t<decltype(law)>;
-      const BucketContext<Law> context{law, model_, particles.body, &particles.angular_velocity, list, shifts,
-                                       cell.velocity_gradient, deforming, expansion_step[bucket.material_a],
-                                       expansion_step[bucket.material_b], bucket.material_a, particles.material, clock};
+      const BucketContext<Law> context{law,
+                                       model_,
+                                       particles.body,
+                                       &particles.angular_velocity,
+                                       list,
+                                       shifts,
+                                       cell.velocity_gradient,
+                                       deforming,
+                                       expansion_step[bucket.material_a],
+                                       expansion_step[bucket.material_b],
+                                       bucket.material_a,
+                                       particles.material,
+                                       clock};
       auto with_sink = [&](auto&& sink) {
-        if (model_.friction) run<true>(context, bucket, sink, threads_);
-        else run<false>(context, bucket, sink, threads_);
+        if (model_.friction)
+          run<true>(context, bucket, sink, threads_);
+        else
+          run<false>(context, bucket, sink, threads_);
       };
-      if (target) with_sink(RecordSink{*target});
-      else with_sink(DirectSink{particles});
+      if (target)
+        with_sink(RecordSink{*target});
+      else
+        with_sink(DirectSink{particles});
     };
     with_spring(model_, row, [&](const auto& spring) {
       using Spring = std::decay_t<decltype(spring)>;
-      if (list.neck.empty()) with_law(KelvinVoigt<Spring>{spring, model_.damping_ratio});
-      else with_law(make_sintering<Spring>(model_, row));
+      if (list.neck.empty())
+        with_law(KelvinVoigt<Spring>{spring, model_.damping_ratio});
+      else
+        with_law(make_sintering<Spring>(model_, row));
     });
   }
 
@@ -244,8 +269,10 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
   } else if (record) {
     DirectSink sink{particles};
     for (std::size_t k = 0; k < list.size(); ++k) {
-      if (model_.friction) sink.add<true>(k, list.i(k), list.j(k), (*record)[k]);
-      else sink.add<false>(k, list.i(k), list.j(k), (*record)[k]);
+      if (model_.friction)
+        sink.add<true>(k, list.i(k), list.j(k), (*record)[k]);
+      else
+        sink.add<false>(k, list.i(k), list.j(k), (*record)[k]);
     }
   }
 }

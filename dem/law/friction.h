@@ -16,13 +16,12 @@ struct TangentialInput {
   double step;              ///< [s]
 };
 
-/// Tangential force on i [N]; advances the spring displacement `slip` [m], which turns with the contact plane and is cut
-/// back to what the sliding force stretches.
+/// Tangential force on i [N]; advances the spring displacement `slip` [m], which turns with the contact plane and is
+/// cut back to what the sliding force stretches.
 inline Vec3 coulomb(const FrictionModel& model, double coefficient, const TangentialInput& in, Vec3& slip) {
   const double k = model.tangential_stiffness_ratio * in.normal_stiffness;
-  const double c = model.tangential_damping_ratio > 0
-                       ? 2 * model.tangential_damping_ratio * std::sqrt(in.reduced_mass * k)
-                       : 0.0;
+  const double c =
+      model.tangential_damping_ratio > 0 ? 2 * model.tangential_damping_ratio * std::sqrt(in.reduced_mass * k) : 0.0;
   slip += in.velocity * in.step;
   slip -= slip.dot(in.normal) * in.normal;
   Vec3 force = k * slip + c * in.velocity;
