@@ -245,7 +245,11 @@ void Simulation::require_stable_step() {
 
 double Simulation::choose_step() {
   const auto& settings = setup_.integration;
-  if (state_.steps % std::uint64_t(settings.limit_interval) == 0 || state_.stable_step == 0) {
+  // The viscosity of a young neck grows as a^4, by orders of magnitude in a few steps: its limit m/eta follows at once.
+  const bool dashpots = setup_.contact.sintering && setup_.contact.sintering->model == SinteringModel::viscous &&
+                        !state_.contacts.neck.empty() && std::isnan(settings.fixed_step);
+  const std::uint64_t interval = dashpots ? 1 : std::uint64_t(settings.limit_interval);
+  if (state_.steps % interval == 0 || state_.stable_step == 0) {
     const StepLimit limit = step_limit();
     state_.critical_step = limit.critical;
     state_.stable_step = settings.step_safety * limit.critical;

@@ -140,9 +140,9 @@ void Walls::add_stiffness(const Particles& particles, const PairTable& table, co
     if (g >= b.radius) continue;
     const NormalInput in = wall_input(b, g, 0, {0, 0});
     with_wall_law(model, modulus(table, model, particles.material[c.particle]), [&](const auto& law) {
-      const Linearisation l = law.linearise(in);
-      stiffness[c.particle] += l.stiffness;
-      damping[c.particle] += l.damper;
+      const Linearisation l = law.linearise(in), whole = with_tangential_share(l, model, in.reduced_mass);
+      stiffness[c.particle] += whole.stiffness;
+      damping[c.particle] += whole.damper;
       stiffness_[c.wall] += l.stiffness;
       damping_[c.wall] += l.damper;
     });

@@ -4,12 +4,21 @@
 #include <cmath>
 #include <limits>
 
+#include "dem/law/friction.h"
+
 namespace densify::dem {
 
 namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// A rolling and sliding solid sphere answers a tangential spring with 1/m + r^2/J = 3.5/m.
-constexpr double rotation_factor = 3.5;
+/// What a contact that forms between two evaluations brings with it: a light contact of two like particles.
+Linearisation light_contact(const ContactModel& model, const PairProperties& row, double radius, double mass) {
+  const bool sinters = model.sintering && row.active;
+  const double ratio = sinters ? model.sintering->damping_ratio : model.damping_ratio;
+  Linearisation l;
+  l.stiffness = with_spring(model, row, [&](const auto& s) { return s.reference_stiffness(radius); });
+  l.damper = 2 * ratio * std::sqrt(0.5 * mass * l.stiffness);
+  return l;
+}
 }  // namespace
 
 double node_limit(double mass, double stiffness, double damping) {
@@ -31,7 +40,6 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
   const std::size_t n = particles.size();
   std::vector<double> stiffness(n, 0.0), damping(n, 0.0);
   const std::vector<double> no_growth(table.materials(), 0.0);
-  const double tangential = model.friction ? rotation_factor * model.friction->tangential_stiffness_ratio : 0.0;
   double smallest_pair = infinity;
 
   for (const auto& bucket : list.buckets)
@@ -46,10 +54,13 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
         else
           l = make_sintering<Spring>(model, table.row(bucket.material_a, bucket.material_b))
                   .linearise(in, list.neck[k]);
-        if (rule == StepRule::thesis) smallest_pair = std::min(smallest_pair, thesis_limit(l, in.reduced_mass));
-        const double factor = std::max(1.0, tangential);
+        if (rule == StepRule::thesis) {
+          smallest_pair = std::min(smallest_pair, thesis_limit(l, in.reduced_mass));
+          continue;
+        }
         const bool dashpot = std::isinf(l.stiffness);  // a viscous contact without spring
-        const double k_sum = dashpot ? 0.0 : factor * l.stiffness, c_sum = dashpot ? l.viscosity : factor * l.damper;
+        if (!dashpot) l = with_tangential_share(l, model, in.reduced_mass);
+        const double k_sum = dashpot ? 0.0 : l.stiffness, c_sum = dashpot ? l.viscosity : l.damper;
         for (std::uint32_t p : {list.i(k), list.j(k)}) {
           stiffness[p] += k_sum;
           damping[p] += c_sum;
@@ -63,9 +74,10 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
   for (std::size_t p = 0; p < n; ++p) {
     const Body& b = particles.body[p];
     // A particle about to touch must find the step small enough for its first contact.
-    const double light = with_spring(model, table.row(particles.material[p], particles.material[p]),
-                                     [&](const auto& s) { return s.reference_stiffness(b.radius); });
-    const double own = node_limit(1 / b.inverse_mass, std::max(light, stiffness[p]), damping[p]);
+    const PairProperties& like = table.row(particles.material[p], particles.material[p]);
+    const double mass = 1 / b.inverse_mass;
+    const Linearisation light = with_tangential_share(light_contact(model, like, b.radius, mass), model, 0.5 * mass);
+    const double own = node_limit(mass, std::max(light.stiffness, stiffness[p]), std::max(light.damper, damping[p]));
     if (own < limit.critical) limit = {own, std::uint32_t(p), 0};
   }
   if (rule == StepRule::thesis) limit.critical = std::min(smallest_pair, limit.critical);
