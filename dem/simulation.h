@@ -90,8 +90,8 @@ class Simulation {
   void evaluate(Recording* record);
   /// Second half of a step: chooses its length and moves particles, punch and cell.
   void move();
-  void advance() {
-    evaluate(nullptr);
+  void advance(Recording* record = nullptr) {
+    evaluate(record);
     move();
   }
 
