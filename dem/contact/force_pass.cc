@@ -76,6 +76,14 @@ const auto& spring_of(const Law& law) {
     return law.spring;
 }
 
+/// What heat adds to the distance at which a pair is at rest [m].  Loose spheres meet at their surfaces; through a neck
+/// the body is whole, so that only the way from each centre to the neck's plane grows and a bonded packing expands as
+/// one body, however unequal its overlaps.
+inline double thermal_growth(const Body& a, const Body& b, double overlap, double of_i, double of_j, bool necked) {
+  const double cut = necked ? 0.5 * overlap : 0.0;
+  return of_i * (a.radius + cut) + of_j * (b.radius + cut);
+}
+
 /// Pair k of a bucket.  Uniform features (deforming cell, thermal growth) are branches; law, friction and sink are not.
 template <bool with_friction, class Law, class Sink>
 inline void one_pair(const BucketContext<Law>& c, Sink& sink, std::size_t k) {
@@ -83,14 +91,12 @@ inline void one_pair(const BucketContext<Law>& c, Sink& sink, std::size_t k) {
   const Body &a = c.body[i], &b = c.body[j];
   const Vec3 branch = b.position - a.position + c.shifts[c.list.image(k)];
   const double reach = a.radius + b.radius, d2 = branch.squaredNorm();
-  if (d2 >= reach * reach) {
-    bool necked = false;
-    if constexpr (has_necks<Law>) necked = c.list.neck[k].phase != NeckPhase::loose;
-    if (!necked) {
-      if constexpr (with_friction) c.list.tangential[k].setZero();
-      sink.skip(k);
-      return;
-    }
+  bool necked = false;
+  if constexpr (has_necks<Law>) necked = c.list.neck[k].phase != NeckPhase::loose;
+  if (d2 >= reach * reach && !necked) {
+    if constexpr (with_friction) c.list.tangential[k].setZero();
+    sink.skip(k);
+    return;
   }
   const double d = std::sqrt(d2);
   const Vec3 n = branch / d;
@@ -103,9 +109,8 @@ inline void one_pair(const BucketContext<Law>& c, Sink& sink, std::size_t k) {
   in.rate = vn;
   if (c.growth_a != 0 || c.growth_b != 0) {
     const bool swapped = c.material[i] != c.material_a;
-    const double grown =
-        (swapped ? c.growth_b : c.growth_a) * a.radius + (swapped ? c.growth_a : c.growth_b) * b.radius;
-    if (c.clock.step > 0) in.rate -= grown / c.clock.step;
+    const double of_i = swapped ? c.growth_b : c.growth_a, of_j = swapped ? c.growth_a : c.growth_b;
+    if (c.clock.step > 0) in.rate -= thermal_growth(a, b, in.overlap, of_i, of_j, necked) / c.clock.step;
   }
   const double product = a.radius * b.radius / reach;
   in.elastic_radius = c.model.hertz_radius == HertzRadius::equivalent ? 2 * product : product;
@@ -291,10 +296,11 @@ NormalInput normal_input(const ContactModel& model, const Particles& particles, 
   const double d = branch.norm();
   Vec3 v = b.velocity - a.velocity;
   if (cell.periodic) v += cell.velocity_gradient * branch;
-  const double grown =
-      expansion_step[particles.material[i]] * a.radius + expansion_step[particles.material[j]] * b.radius;
   NormalInput in;
   in.overlap = d - a.radius - b.radius;
+  const bool necked = !list.neck.empty() && list.neck[k].phase != NeckPhase::loose;
+  const double grown = thermal_growth(a, b, in.overlap, expansion_step[particles.material[i]],
+                                      expansion_step[particles.material[j]], necked);
   in.rate = v.dot(branch) / d - (clock.step > 0 ? grown / clock.step : 0.0);
   in.elastic_radius = elastic_radius(model, a.radius, b.radius);
   in.sintering_radius = model.sintering ? sintering_radius(model.sintering->radius, a.radius, b.radius) : 0;
