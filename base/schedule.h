@@ -67,4 +67,8 @@ class Schedule {
   std::vector<Point> points_;  // start, then the end of each stage
 };
 
+/// Reads start_temperature, start_pressure and the [[stage]] list of a process section.  Throws InputError at the key
+/// that goes back in time, leaves the duration open or gives it twice.  A visit for help returns a stand-in.
+Schedule read_schedule(Section& process);
+
 }  // namespace densify

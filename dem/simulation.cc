@@ -29,13 +29,10 @@ std::vector<Wall> make_walls(const Container& c) {
       plane("bottom", Vec3::Zero(), Vec3::UnitZ());
       plane("punch", Vec3(0, 0, c.size[2]), -Vec3::UnitZ());
       break;
-    default: break;
+    default:
+      break;
   }
   return walls;
-}
-
-double punch_area(const Container& c) {
-  return c.shape == ContainerShape::cylinder ? 0.25 * M_PI * c.size[0] * c.size[0] : c.size[0] * c.size[1];
 }
 
 /// Order of the particles along a grid of about one large particle a cell, so that neighbours are near in memory.
@@ -69,7 +66,9 @@ void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
   values = std::move(sorted);
 }
 
-double sphere_volume(double r) { return 4.0 / 3 * M_PI * r * r * r; }
+double sphere_volume(double r) {
+  return 4.0 / 3 * M_PI * r * r * r;
+}
 
 }  // namespace
 
@@ -77,7 +76,8 @@ Simulation::Simulation(Setup setup)
     : setup_(std::move(setup)),
       table_(setup_.materials, setup_.interfaces, setup_.contact),
       pass_(setup_.contact, setup_.integration.threads) {
-  if (setup_.particles.size() == 0) throw InputError("powder: no particles (the powder is empty); give a number of at least 1");
+  if (setup_.particles.size() == 0)
+    throw InputError("powder: no particles (the powder is empty); give a number of at least 1");
   Particles& particles = setup_.particles;
   const auto order = spatial_order(particles);
   permute(particles.body, order);
@@ -119,14 +119,14 @@ Simulation::Simulation(Setup setup)
   punch_wall_ = wall("punch");
   if (punch_wall_ && setup_.container.punch) {
     state_.punch.mass = setup_.container.punch_settings.mass_fraction * setup_.integration.mass_scaling * powder_mass;
-    state_.punch.area = punch_area(setup_.container);
+    state_.punch.area = punch_area();
   }
   Vec3 unused;
   for (const auto& w : state_.walls.wall)
     for (std::size_t p = 0; p < n; ++p)
       if (Walls::gap(w, state_.particles.body[p].position, unused) < 0)
-        throw InputError("specimen: particle " + std::to_string(state_.particles.id[p]) + " lies outside the container (" +
-                         w.name + "); move it inside or enlarge the container");
+        throw InputError("specimen: particle " + std::to_string(state_.particles.id[p]) +
+                         " lies outside the container (" + w.name + "); move it inside or enlarge the container");
   set_environment();
   rebuild_lists();
 }
@@ -135,6 +135,15 @@ std::optional<std::size_t> Simulation::wall(std::string_view name) const {
   for (std::size_t w = 0; w < state_.walls.wall.size(); ++w)
     if (state_.walls.wall[w].name == name) return w;
   return std::nullopt;
+}
+
+double Simulation::punch_area() const {
+  const auto& walls = state_.walls.wall;
+  if (const auto die = wall("die")) return M_PI * walls[*die].radius * walls[*die].radius;
+  const auto x = wall("wall x+"), y = wall("wall y+");
+  if (!x || !y) return 0;
+  return (walls[*x].point[0] - walls[*wall("wall x-")].point[0]) *
+         (walls[*y].point[1] - walls[*wall("wall y-")].point[1]);
 }
 
 double Simulation::real_mass(std::size_t p) const {
@@ -154,6 +163,7 @@ void Simulation::set_environment() {
   const bool changed = t != state_.temperature;
   if (changed || setup_.contact.sintering) table_.update(t, state_.time);
   state_.active_since = table_.active_since();
+  for (auto& w : state_.walls.wall) w.thermal_rate = 0;
   if (!changed) return;
   const double dt = t - setup_.reference_temperature;
   const double old_dt = std::isnan(state_.temperature) ? 0.0 : state_.temperature - setup_.reference_temperature;
@@ -167,14 +177,22 @@ void Simulation::set_environment() {
   }
   if (grows)
     for (std::size_t p = 0; p < state_.particles.size(); ++p)
-      state_.particles.body[p].radius = state_.particles.reference_radius[p] * state_.expansion[state_.particles.material[p]];
+      state_.particles.body[p].radius =
+          state_.particles.reference_radius[p] * state_.expansion[state_.particles.material[p]];
   const double a = setup_.container.wall_expansion;
   if (a != 0) {
     const double stretch = (1 + a * dt) / (1 + a * old_dt);
+    const double rate = state_.last_step > 0 ? (1 - 1 / stretch) / state_.last_step : 0.0;
     for (auto& w : state_.walls.wall) {
-      if (w.shape == WallShape::cylinder) w.radius *= stretch;
-      else if (std::abs(w.normal[2]) < 0.5) w.point *= stretch;  // lateral planes of a box
+      if (w.shape == WallShape::cylinder)
+        w.radius *= stretch;
+      else if (std::abs(w.normal[2]) < 0.5)
+        w.point *= stretch;  // lateral planes of a box
+      else
+        continue;
+      w.thermal_rate = rate;
     }
+    if (state_.punch.mass > 0) state_.punch.area = punch_area();
   }
   state_.temperature = t;
 }
@@ -182,13 +200,19 @@ void Simulation::set_environment() {
 void Simulation::rebuild_lists() {
   const HistoryNeeds needs{setup_.contact.friction.has_value(),
                            setup_.contact.sintering && (table_.any_active() || !state_.contacts.neck.empty())};
-  rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs);
+  try {
+    rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs);
+  } catch (const InputError& error) {  // a cell that has become too narrow is no mistake of the input any more
+    if (state_.steps == 0) throw;
+    throw RunError(error.what());
+  }
   state_.walls.rebuild(state_.particles, state_.contacts.skin);
   pass_.list_changed(state_.contacts, state_.particles.size());
 }
 
 void Simulation::keep_list_fresh() {
-  const double age = list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, setup_.integration.threads);
+  const double age =
+      list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, setup_.integration.threads);
   if (std::isnan(age)) {
     for (std::size_t p = 0; p < state_.particles.size(); ++p)
       if (!state_.particles.body[p].position.allFinite())
@@ -196,7 +220,8 @@ void Simulation::keep_list_fresh() {
                        " is no longer finite at process time " + std::to_string(state_.time) +
                        " s; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
   }
-  const bool first_necks = setup_.contact.sintering && state_.contacts.neck.empty() && table_.any_active();
+  const bool first_necks =
+      setup_.contact.sintering && state_.contacts.neck.empty() && state_.contacts.size() > 0 && table_.any_active();
   if (age >= 1 || first_necks || state_.walls.age(state_.contacts.skin) >= 1) rebuild_lists();
 }
 
@@ -207,7 +232,8 @@ void Simulation::compute_forces(Recording* record) {
   if (!state_.walls.wall.empty())
     state_.walls.compute(state_.particles, table_, setup_.contact, expansion_step_, clock,
                          record ? &record->wall : nullptr);
-  else if (record) record->wall.clear();
+  else if (record)
+    record->wall.clear();
   for (const auto& load : setup_.loads) {
     const double share = load.ramp > 0 ? std::min(1.0, state_.time / load.ramp) : 1.0;
     state_.particles.force[load.particle] += share * load.force;
@@ -217,6 +243,23 @@ void Simulation::compute_forces(Recording* record) {
       state_.particles.force[p] += real_mass(p) * setup_.integration.gravity;
 }
 
+StepLimit Simulation::step_limit() {
+  const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
+  return critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact, state_.walls, punch,
+                       {state_.time, state_.last_step}, setup_.integration.rule);
+}
+
+void Simulation::require_stable_step() {
+  const double fixed = setup_.integration.fixed_step;
+  if (std::isnan(fixed)) return;
+  const StepLimit limit = step_limit();
+  if (fixed > limit.critical)
+    throw InputError("integration.fixed_step: " + std::to_string(fixed) + " s is above the stability limit of " +
+                     std::to_string(limit.critical) + " s (particle " +
+                     std::to_string(state_.particles.id[limit.particle]) +
+                     "); use a smaller one, a larger mass_scaling, or leave it out");
+}
+
 double Simulation::choose_step() {
   const auto& settings = setup_.integration;
   // The viscosity of a young neck grows as a^4, by orders of magnitude in a few steps: its limit m/eta follows at once.
@@ -224,9 +267,7 @@ double Simulation::choose_step() {
                         !state_.contacts.neck.empty() && std::isnan(settings.fixed_step);
   const std::uint64_t interval = dashpots ? 1 : std::uint64_t(settings.limit_interval);
   if (state_.steps % interval == 0 || state_.stable_step == 0) {
-    const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
-    const StepLimit limit = critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact,
-                                          state_.walls, punch, {state_.time, state_.last_step}, settings.rule);
+    const StepLimit limit = step_limit();
     state_.critical_step = limit.critical;
     state_.stable_step = settings.step_safety * limit.critical;
     if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
@@ -240,32 +281,12 @@ double Simulation::choose_step() {
 }
 
 void Simulation::evaluate(Recording* record) {
-  take_back_evaluation();
-  before_evaluation_ = state_;  // a pass advances the histories of the contacts by the last step, once
-  forces_now(record);
-}
-
-void Simulation::take_back_evaluation() {
-  if (!before_evaluation_) return;
-  State before = std::move(*before_evaluation_);
-  before_evaluation_.reset();
-  restore(std::move(before));
-}
-
-State& Simulation::mutable_state() {
-  take_back_evaluation();
-  return state_;
-}
-
-void Simulation::forces_now(Recording* record) {
   set_environment();
   keep_list_fresh();
   compute_forces(record);
 }
 
-void Simulation::advance(Recording* record) {
-  take_back_evaluation();
-  forces_now(record);
+void Simulation::move() {
   const double step = choose_step();
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   kick(state_.particles, kick_step, setup_.integration.drag, setup_.integration.threads);
@@ -296,7 +317,6 @@ bool Simulation::all_at_equilibrium() const {
 }
 
 void Simulation::restore(State state) {
-  before_evaluation_.reset();
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
   const double since_time = state_.time - state_.last_step;

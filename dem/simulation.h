@@ -15,30 +15,30 @@ enum class ContainerShape : std::uint8_t { free, cylinder, box, periodic };
 /// What holds the powder.
 struct Container {
   ContainerShape shape = ContainerShape::free;
-  Vec3 size = Vec3::Zero();       ///< cylinder: (diameter, diameter, height); box: edges [m]
-  bool punch = true;              ///< cylinder and box: a load-controlled punch on top
-  double wall_expansion = 0;      ///< linear thermal expansion of the lateral walls [1/K]
+  Vec3 size = Vec3::Zero();   ///< cylinder: (diameter, diameter, height); box: edges [m]
+  bool punch = true;          ///< cylinder and box: a load-controlled punch on top
+  double wall_expansion = 0;  ///< linear thermal expansion of the lateral walls [1/K]
   WallMaterial material;
   PunchSettings punch_settings;
 };
 
 /// A force on one particle, reached linearly over `ramp`.
 struct Load {
-  std::uint32_t particle = 0;     ///< number as listed in the specimen, from 0
-  Vec3 force = Vec3::Zero();      ///< [N]
-  double ramp = 0;                ///< [s]
+  std::uint32_t particle = 0;  ///< number as listed in the specimen, from 0
+  Vec3 force = Vec3::Zero();   ///< [N]
+  double ramp = 0;             ///< [s]
 };
 
 struct IntegrationSettings {
   StepRule rule = StepRule::particle_sum;
   double step_safety = 0.8;
-  double fixed_step = unset;      ///< replaces the rule [s]
-  double largest_step = unset;    ///< [s]
-  int limit_interval = 20;        ///< steps between two evaluations of the limit
-  double mass_scaling = 1;        ///< alpha_m (4.80)
-  double skin = 0.2;              ///< reach of the neighbour list over the mean radius
-  double drag = 0;                ///< mass-proportional damping rate [1/s], for packing
-  Vec3 gravity = Vec3::Zero();    ///< [m/s^2]
+  double fixed_step = unset;    ///< replaces the rule [s]
+  double largest_step = unset;  ///< [s]
+  int limit_interval = 20;      ///< steps between two evaluations of the limit
+  double mass_scaling = 1;      ///< alpha_m (4.80)
+  double skin = 0.2;            ///< reach of the neighbour list over the mean radius
+  double drag = 0;              ///< mass-proportional damping rate [1/s], for packing
+  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
   int threads = 1;
 };
 
@@ -63,12 +63,12 @@ struct State {
   ContactList contacts;
   Walls walls;
   Punch punch;
-  std::vector<double> expansion;     ///< r(T)/r_ref of each material
-  double temperature = unset;        ///< at which radii and rows are evaluated [K]
-  double time = 0;                   ///< process time t^n [s]
-  double last_step = 0;              ///< t^n - t^{n-1} [s]
-  double stable_step = 0;            ///< safety x critical of the last evaluation [s]
-  double critical_step = 0;          ///< [s]
+  std::vector<double> expansion;  ///< r(T)/r_ref of each material
+  double temperature = unset;     ///< at which radii and rows are evaluated [K]
+  double time = 0;                ///< process time t^n [s]
+  double last_step = 0;           ///< t^n - t^{n-1} [s]
+  double stable_step = 0;         ///< safety x critical of the last evaluation [s]
+  double critical_step = 0;       ///< [s]
   std::uint64_t steps = 0;
   std::vector<double> active_since;  ///< of each pair of materials [s]
 };
@@ -84,12 +84,21 @@ class Simulation {
   /// Throws InputError when the setup is inconsistent (missing property, particle outside its container, ...).
   explicit Simulation(Setup setup);
 
-  /// One step.  With `record` given it first fills it with the forces at the present time; the trajectory is the same
-  /// with and without.  Throws RunError when the state is no longer sound.
-  void advance(Recording* record);
-  /// Forces at the present time without moving on: for a measure between steps and for the last row of a run.  `state()`
-  /// then shows the evaluated state; the next `advance` starts from the state before, so that looking changes nothing.
+  /// First half of a step: environment, lists and forces at the present time.  With `record` given it also fills it;
+  /// the trajectory is the same with and without.  Once a step, since histories advance.  Throws RunError when the
+  /// state is no longer sound.
   void evaluate(Recording* record);
+  /// Second half of a step: chooses its length and moves particles, punch and cell.
+  void move();
+  void advance(Recording* record = nullptr) {
+    evaluate(record);
+    move();
+  }
+
+  /// Limit of the step in the present state [s], before the safety factor.
+  StepLimit step_limit();
+  /// Throws InputError when a fixed step is above the present limit.
+  void require_stable_step();
 
   bool finished() const { return state_.time >= setup_.schedule.end(); }
   /// True when every neck of a packing that has necks is at equilibrium.
@@ -100,22 +109,22 @@ class Simulation {
   const PairTable& table() const { return table_; }
   /// Replaces the state by a checkpoint's.
   void restore(State state);
-  /// For owners that change the state between steps; takes back an `evaluate`.
-  State& mutable_state();
+  State& mutable_state() { return state_; }
+  void set_gravity(const Vec3& g) { setup_.integration.gravity = g; }
 
   double temperature() const { return setup_.schedule.temperature(state_.time); }
   double pressure() const { return setup_.schedule.pressure(state_.time); }
-  double real_mass(std::size_t p) const;   ///< [kg]
+  double real_mass(std::size_t p) const;  ///< [kg]
   /// Solid volume of the powder at the reference temperature [m^3].
   double solid_volume() const;
   /// Index of a wall by name; no value when the container has none of that name.
   std::optional<std::size_t> wall(std::string_view name) const;
-  std::size_t bytes() const;               ///< memory of state and scratch
-  std::size_t contacts_now() const;        ///< touching or necked pairs
+  /// Present area under the punch, the hot one in an expanding die; 0 without lateral walls [m^2].
+  double punch_area() const;
+  std::size_t bytes() const;         ///< memory of state and scratch
+  std::size_t contacts_now() const;  ///< touching or necked pairs
 
  private:
-  void forces_now(Recording* record);
-  void take_back_evaluation();
   void set_environment();
   void keep_list_fresh();
   void compute_forces(Recording* record);
@@ -128,7 +137,6 @@ class Simulation {
   State state_;
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
-  std::optional<State> before_evaluation_;
 };
 
 }  // namespace densify::dem

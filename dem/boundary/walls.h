@@ -18,11 +18,12 @@ struct Wall {
   double radius = 0;             ///< of a cylinder [m]
   Vec3 velocity = Vec3::Zero();  ///< of a plane [m/s]
   double radius_rate = 0;        ///< of a cylinder [m/s]
+  double thermal_rate = 0;       ///< relative growth rate of a lateral wall's position by expansion [1/s]
 };
 
 /// What walls are made of.
 struct WallMaterial {
-  double youngs_modulus = unset;   ///< [Pa]; unset: rigid against the particle's own modulus
+  double youngs_modulus = unset;  ///< [Pa]; unset: rigid against the particle's own modulus
   double poissons_ratio = unset;
 };
 
@@ -37,8 +38,8 @@ struct WallContact {
 struct WallRecord {
   std::uint32_t particle;
   std::uint8_t wall;
-  Vec3 force;    ///< on the particle [N]
-  Vec3 branch;   ///< from the particle's centre to the contact point [m]
+  Vec3 force;             ///< on the particle [N]
+  Vec3 branch;            ///< from the particle's centre to the contact point [m]
   double elastic_energy;  ///< [J]
 };
 

@@ -17,11 +17,11 @@ struct ContactList {
   };
   static constexpr std::uint32_t index_bits = 27, index_mask = (1u << index_bits) - 1;
 
-  std::vector<std::uint32_t> first;         ///< i
-  std::vector<std::uint32_t> second;        ///< j | image code << 27
+  std::vector<std::uint32_t> first;   ///< i
+  std::vector<std::uint32_t> second;  ///< j | image code << 27
   std::vector<Bucket> buckets;
-  std::vector<Vec3> tangential;             ///< spring displacement of friction [m]; empty without friction
-  std::vector<NeckHistory> neck;            ///< empty without sintering
+  std::vector<Vec3> tangential;   ///< spring displacement of friction [m]; empty without friction
+  std::vector<NeckHistory> neck;  ///< empty without sintering
 
   // When the list was built:
   std::vector<Vec3> reference_position;     ///< [m]

@@ -155,9 +155,17 @@ inline void one_pair(const BucketContext<Law>& c, Sink& sink, std::size_t k) {
     result.normal = f.total;
     result.sintering = f.sintering;
     double u = in.overlap;
+    bool springs = true;  // a viscous contact has no spring to store energy in
     if constexpr (has_necks<Law>)
-      if (c.list.neck[k].phase != NeckPhase::loose) u = c.list.neck[k].elastic;
-    result.elastic_energy = spring_of(c.law).energy(u, in.elastic_radius);
+      if (const auto& h = c.list.neck[k]; h.phase != NeckPhase::loose) {
+        u = h.elastic;
+        springs = c.law.settings.model != SinteringModel::viscous || !Law::flows(h.phase);
+      }
+    if (springs) {
+      const auto& spring = spring_of(c.law);
+      result.elastic_energy = spring.energy(u, in.elastic_radius);
+      result.damping = f.total - f.sintering - spring.force(u, in.elastic_radius);
+    }
     result.touching = true;
   }
   sink.template add<with_friction>(k, i, j, result);

@@ -12,9 +12,7 @@ namespace densify::dem {
 struct ImageCode {
   static constexpr std::uint8_t none = 13;
   static constexpr std::uint8_t of(int a, int b, int c) { return std::uint8_t((a + 1) * 9 + (b + 1) * 3 + (c + 1)); }
-  static Eigen::Vector3i unpack(std::uint8_t code) {
-    return {code / 9 - 1, (code / 3) % 3 - 1, code % 3 - 1};
-  }
+  static Eigen::Vector3i unpack(std::uint8_t code) { return {code / 9 - 1, (code / 3) % 3 - 1, code % 3 - 1}; }
 };
 
 /// Periodic cell with edge vectors in the columns of `h` [m]; not periodic when `periodic` is false.

@@ -107,6 +107,7 @@ TEST(Bond, RigidCellCarriesTheThermalForce) {
   dem::Recording record;
   while (sim.state().time < 1) sim.advance(&record);
   sim.evaluate(&record);
+  sim.move();
   EXPECT_NEAR(record.contact[0].normal / (-1e5 * spacing * std::log1p(alpha * (hot - cold))), 1, 1e-5);
   while (!sim.finished()) sim.advance(&record);
   sim.evaluate(&record);

@@ -1,0 +1,80 @@
+// The command line: one function a command, nothing else.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "app/check.h"
+#include "app/run.h"
+#include "base/check.h"
+#include "base/version.h"
+#include "dem/io/scene.h"
+
+namespace {
+
+constexpr const char* exit_codes =
+    "Exit codes: 0 done; 1 internal error; 2 bad input; 3 run stopped by a guard; 4 file error; 5 interrupted, "
+    "checkpoint written.";
+
+int run_main(int argc, char** argv) {
+  CLI::App app{"Densify: how a powder becomes a solid part under heat and pressure."};
+  app.name("densify");
+  app.footer(exit_codes);
+  app.set_version_flag(
+      "--version", "densify " + std::string(densify::version()) + " (" + std::string(densify::git_revision()) + ")");
+  app.require_subcommand(1);
+
+  densify::app::RunCommand run;
+  CLI::App* run_command = app.add_subcommand("run", "Run a scene to its end");
+  run_command->add_option("SCENE", run.scene, "A scene file, or a folder that holds scene.toml")->required();
+  run_command->add_option("--out", run.folder, "Folder of the results; without it results/NAME");
+  run_command->add_option("--set", run.overrides, "path.to.key=value, again for each")->take_all();
+  run_command->add_option("--threads", run.threads, "Threads; results do not depend on their number")
+      ->check(CLI::Range(1, 1024));
+  run_command->add_flag("--resume", run.resume, "Continue from the checkpoint in the folder of the results");
+  run_command->add_flag("--quiet", run.quiet, "No progress, no summary");
+
+  densify::app::CheckCommand check;
+  CLI::App* check_command =
+      app.add_subcommand("check", "Check a scene: memory, critical step, number of steps, expected time; runs nothing");
+  check_command->add_option("SCENE", check.scene, "A scene file, or a folder that holds scene.toml")->required();
+  check_command->add_option("--set", check.overrides, "path.to.key=value, again for each")->take_all();
+  check_command->add_option("--threads", check.threads, "Threads")->check(CLI::Range(1, 1024));
+
+  CLI::App* scene_command =
+      app.add_subcommand("help-scene", "Every key of a scene with unit, range, default and meaning");
+  CLI::App* help_command = app.add_subcommand("help", "This text");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : 2;
+  }
+  if (run_command->parsed()) return densify::app::run_command(run);
+  if (check_command->parsed()) return densify::app::check_command(check);
+  if (scene_command->parsed()) std::fputs(densify::dem::scene_help().c_str(), stdout);
+  if (help_command->parsed()) std::fputs(app.help().c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  auto fail = [](const std::exception& error, int code) {
+    std::fprintf(stderr, "densify: %s\n", error.what());
+    return code;
+  };
+  try {
+    return run_main(argc, argv);
+  } catch (const densify::InputError& error) {
+    return fail(error, 2);
+  } catch (const densify::RunError& error) {
+    return fail(error, 3);
+  } catch (const densify::FileError& error) {
+    return fail(error, 4);
+  } catch (const densify::Interrupted& error) {
+    return fail(error, 5);
+  } catch (const std::exception& error) {
+    return fail(error, 1);
+  }
+}

@@ -1,0 +1,136 @@
+#include "dem/measure/envelope.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace densify::dem {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double sphere_volume(double r) {
+  return 4.0 / 3 * M_PI * r * r * r;
+}
+
+/// Points spread evenly in the unit ball: a Fibonacci spiral with radii at equal shares of volume.
+const std::array<Vec3, 256>& ball_points() {
+  static const auto points = [] {
+    std::array<Vec3, 256> p;
+    const double golden = M_PI * (3 - std::sqrt(5.0));
+    const auto n = double(p.size());
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const double z = 1 - (2 * double(k) + 1) / n, rho = std::sqrt(1 - z * z);
+      // A second irrational sequence decouples the radius from the direction.
+      const double share = std::fmod(0.5 + double(k) * 0.7548776662466927, 1.0);
+      p[k] = std::cbrt(share) * Vec3(rho * std::cos(golden * double(k)), rho * std::sin(golden * double(k)), z);
+    }
+    return p;
+  }();
+  return points;
+}
+
+}  // namespace
+
+double mean_diameter(const Simulation& sim) {
+  double sum = 0;
+  for (double r : sim.state().particles.reference_radius) sum += 2 * r;
+  return sum / double(sim.state().particles.size());
+}
+
+double solid_volume_now(const Simulation& sim) {
+  double v = 0;
+  for (const auto& b : sim.state().particles.body) v += sphere_volume(b.radius);
+  return v;
+}
+
+Envelope measure_envelope(const Simulation& sim) {
+  const State& s = sim.state();
+  if (s.cell.periodic) return {Vec3(s.cell.h.colwise().norm()), s.cell.volume()};
+
+  Vec3 low = Vec3::Constant(infinity), high = Vec3::Constant(-infinity);
+  for (const auto& b : s.particles.body) {
+    low = low.cwiseMin(b.position - Vec3::Constant(b.radius));
+    high = high.cwiseMax(b.position + Vec3::Constant(b.radius));
+  }
+  auto touches = [&](const char* name) {
+    const auto w = sim.wall(name);
+    return w && *w < s.walls.normal_force().size() && s.walls.normal_force()[*w] > 0;
+  };
+  auto plane = [&](const char* name, int axis) { return s.walls.wall[*sim.wall(name)].point[axis]; };
+  if (touches("bottom")) low[2] = plane("bottom", 2);
+  if (touches("punch")) high[2] = plane("punch", 2);
+  const ContainerShape shape = sim.setup().container.shape;
+  if (shape == ContainerShape::box &&
+      (touches("wall x-") || touches("wall x+") || touches("wall y-") || touches("wall y+")))
+    for (int axis : {0, 1}) {
+      low[axis] = plane(axis == 0 ? "wall x-" : "wall y-", axis);
+      high[axis] = plane(axis == 0 ? "wall x+" : "wall y+", axis);
+    }
+  if (touches("die")) {
+    const double r = s.walls.wall[*sim.wall("die")].radius;
+    low[0] = low[1] = -r;
+    high[0] = high[1] = r;
+  }
+  Envelope e{high - low, 0};
+  e.volume = e.size.prod() * (shape == ContainerShape::cylinder ? 0.25 * M_PI : 1.0);
+  return e;
+}
+
+double relative_density(const Simulation& sim, const Envelope& e) {
+  return solid_volume_now(sim) / e.volume;
+}
+
+double inner_relative_density(const Simulation& sim, double distance) {
+  const State& s = sim.state();
+  if (s.cell.periodic) return solid_volume_now(sim) / s.cell.volume();
+  if (s.walls.wall.empty()) return unset;
+  Vec3 low = Vec3::Constant(-infinity), high = Vec3::Constant(infinity);
+  double radius = infinity;
+  for (const auto& w : s.walls.wall) {
+    if (w.shape == WallShape::cylinder) {
+      radius = w.radius - distance;
+      continue;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (w.normal[axis] > 0.5) low[axis] = w.point[axis] + distance;
+      if (w.normal[axis] < -0.5) high[axis] = w.point[axis] - distance;
+    }
+  }
+  // A punch that has lifted off must not stretch the region beyond the powder.
+  double top = -infinity, base = infinity;
+  for (const auto& b : s.particles.body) {
+    top = std::max(top, b.position[2] + b.radius);
+    base = std::min(base, b.position[2] - b.radius);
+  }
+  high[2] = std::min(high[2], top - distance);
+  low[2] = std::max(low[2], base + distance);
+  const bool round = radius < infinity;
+  if (high[2] <= low[2] || (round ? radius <= 0 : high[0] <= low[0] || high[1] <= low[1])) return unset;
+  const double region = (high[2] - low[2]) * (round ? M_PI * radius * radius : (high[0] - low[0]) * (high[1] - low[1]));
+
+  auto inside = [&](const Vec3& x) {
+    if (x[2] < low[2] || x[2] > high[2]) return false;
+    if (round) return x[0] * x[0] + x[1] * x[1] <= radius * radius;
+    return x[0] >= low[0] && x[0] <= high[0] && x[1] >= low[1] && x[1] <= high[1];
+  };
+  double volume = 0;
+  for (const auto& b : s.particles.body) {
+    const double r = b.radius, rho = std::hypot(b.position[0], b.position[1]);
+    const bool clear = round ? rho + r <= radius
+                             : b.position[0] - r >= low[0] && b.position[0] + r <= high[0] &&
+                                   b.position[1] - r >= low[1] && b.position[1] + r <= high[1];
+    if (clear && b.position[2] - r >= low[2] && b.position[2] + r <= high[2]) {
+      volume += sphere_volume(r);
+      continue;
+    }
+    if (b.position[2] + r < low[2] || b.position[2] - r > high[2] || (round && rho - r > radius)) continue;
+    int count = 0;
+    for (const auto& p : ball_points()) count += inside(b.position + r * p);
+    volume += sphere_volume(r) * count / double(ball_points().size());
+  }
+  return volume / region;
+}
+
+}  // namespace densify::dem

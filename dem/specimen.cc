@@ -1,0 +1,208 @@
+#include "dem/specimen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/check.h"
+#include "base/nearest.h"
+#include "dem/io/atomic_file.h"
+#include "dem/io/hdf5_file.h"
+#include "dem/io/particle_import.h"
+
+namespace densify::dem {
+
+namespace {
+
+std::string formatted(const char* format, double a, double b) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+std::uint8_t material_index(const Scene& scene, const ImportedParticles& imported, std::size_t p) {
+  std::string name = imported.material[p];
+  if (scene.import->format == ImportSettings::Format::lammps) {
+    const std::size_t type = std::stoul(name);
+    if (type < 1 || type > scene.import->types.size())
+      throw InputError(imported.file + ":" + std::to_string(imported.line[p]) + ": type " + name +
+                       " has no material; specimen.import.types names " + std::to_string(scene.import->types.size()));
+    name = scene.import->types[type - 1];
+  }
+  std::vector<std::string> known;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (scene.materials[m].name == name) return std::uint8_t(m);
+    known.push_back(scene.materials[m].name);
+  }
+  throw InputError(imported.file + ":" + std::to_string(imported.line[p]) + ": material \"" + name +
+                   "\" is not defined in the scene" + did_you_mean(name, known));
+}
+
+ImportedParticles read_import(const Scene& scene) {
+  const auto& s = *scene.import;
+  return s.format == ImportSettings::Format::csv ? read_particle_table(s.file, s.length_unit)
+                                                 : read_lammps_data(s.file, s.length_unit);
+}
+
+Cell import_cell(const Scene& scene, const ImportedParticles& imported) {
+  Cell cell;
+  if (scene.container.shape != ContainerShape::periodic) return cell;
+  if (!scene.cell_vectors.isZero(0)) {
+    cell.h = scene.cell_vectors;
+  } else if (imported.box) {
+    cell = *imported.box;
+  } else {
+    throw InputError("specimen: a periodic specimen imported from " + imported.file +
+                     " needs its cell; give [specimen.cell] with the edge vectors a, b and c");
+  }
+  cell.periodic = true;
+  return cell;
+}
+
+GreenBody import_body(const Scene& scene) {
+  ImportedParticles imported = read_import(scene);
+  GreenBody body;
+  body.container = scene.container;
+  body.cell = import_cell(scene, imported);
+  if (body.cell.periodic)
+    for (Vec3& x : imported.position) x = body.cell.wrap(x);
+  reject_overlaps(imported, body.cell, scene.import->largest_overlap);
+  Particles& p = body.particles;
+  for (std::size_t k = 0; k < imported.size(); ++k) {
+    p.body.push_back({imported.position[k], imported.radius[k], Vec3::Zero(), 1});
+    p.reference_radius.push_back(imported.radius[k]);
+    p.material.push_back(material_index(scene, imported, k));
+    p.id.push_back(std::uint32_t(k));
+  }
+  return body;
+}
+
+/// Particles whose surface is beyond a wall by more than the import's largest overlap are a mistake, not a packing.
+void reject_outside(const GreenBody& body, double largest_overlap) {
+  const Vec3& size = body.container.size;
+  const ContainerShape shape = body.container.shape;
+  if (shape != ContainerShape::cylinder && shape != ContainerShape::box) return;
+  for (std::size_t k = 0; k < body.particles.size(); ++k) {
+    const Vec3& x = body.particles.body[k].position;
+    const double r = body.particles.reference_radius[k];
+    double beyond = std::max(r - x[2], x[2] + r - size[2]);
+    if (shape == ContainerShape::cylinder)
+      beyond = std::max(beyond, std::hypot(x[0], x[1]) + r - 0.5 * size[0]);
+    else
+      for (int axis : {0, 1}) beyond = std::max({beyond, r - x[axis], x[axis] + r - size[axis]});
+    if (beyond > largest_overlap * r)
+      throw InputError("specimen: particle " + std::to_string(body.particles.id[k]) + " lies " +
+                       formatted("%.3g um (%.0f %% of its radius)", beyond * 1e6, 100 * beyond / r) +
+                       " outside the container; move it inside or enlarge the container");
+  }
+}
+
+}  // namespace
+
+PowderSample particles_of(const Scene& scene) {
+  if (scene.powder) return draw(*scene.powder);
+  PowderSample sample;
+  const ImportedParticles imported = read_import(scene);
+  for (std::size_t k = 0; k < imported.size(); ++k) {
+    sample.diameter.push_back(2 * imported.radius[k]);
+    sample.material.push_back(material_index(scene, imported, k));
+  }
+  return sample;
+}
+
+Specimen make_specimen(const Scene& scene, int threads, const PackingProgress& progress) {
+  Specimen specimen;
+  if (scene.import) {
+    specimen.body = import_body(scene);
+    reject_outside(specimen.body, scene.import->largest_overlap);
+  } else {
+    const PowderSample sample = draw(*scene.powder);
+    const PackingSettings settings = scene.packing.value_or(PackingSettings{});
+    const CompactionGoal goal{scene.container, settings.green_density, settings.friction, settings.largest_overlap,
+                              settings.seed};
+    specimen.body = compact(sample.diameter, sample.material, goal, threads, progress);
+  }
+
+  std::vector<double> diameters;
+  for (double r : specimen.body.particles.reference_radius) diameters.push_back(2 * r);
+  const auto [low, high] = std::minmax_element(diameters.begin(), diameters.end());
+  std::vector<double> edges;
+  constexpr int bins = 20;
+  for (int b = 0; b <= bins; ++b) edges.push_back(*low + (*high - *low) * b / bins);
+  if (*high > *low) {
+    edges.back() = *high;
+    specimen.sizes = size_statistics(diameters, edges);
+  } else {
+    specimen.sizes = {diameters.size(), *low, 0, *low, *high, solid_volume(diameters), {*low, *high}, {1}, {1}};
+  }
+  const SizeStatistics& s = specimen.sizes;
+  specimen.lines.push_back(std::to_string(s.count) + " particles, solid volume " +
+                           formatted("%.4g um^3 (%.4g m^3)", s.solid_volume * 1e18, s.solid_volume));
+  specimen.lines.push_back(
+      formatted("diameter mean %.3f um, standard deviation %.3f um", s.mean * 1e6, s.standard_deviation * 1e6) +
+      formatted(", %.2f to %.2f um", s.minimum * 1e6, s.maximum * 1e6));
+  if (!scene.import)
+    specimen.lines.push_back(formatted("green density %.4f, coordination number %.2f", specimen.body.relative_density,
+                                       specimen.body.coordination_number) +
+                             formatted(", mean overlap %.3f %% of the mean radius (%.0f packing steps)",
+                                       100 * specimen.body.mean_overlap, double(specimen.body.steps)));
+  return specimen;
+}
+
+Setup make_setup(const Scene& scene, const GreenBody& body, int threads) {
+  Setup setup{scene.materials,   scene.interfaces, scene.contact, scene.container,
+              scene.integration, scene.schedule,   scene.loads,   scene.reference_temperature,
+              body.particles,    body.cell};
+  setup.container.size = body.container.size;
+  setup.integration.threads = threads;
+  setup.cell.velocity_gradient = scene.velocity_gradient;
+  return setup;
+}
+
+void write_specimen(const std::filesystem::path& path, const GreenBody& body) {
+  Hdf5Writer file(path);
+  std::vector<Vec3> position;
+  for (const auto& b : body.particles.body) position.push_back(b.position);
+  file.table("position", position, "m");
+  file.list("radius", body.particles.reference_radius, "m");
+  file.list("material", body.particles.material, "");
+  file.list("id", body.particles.id, "");
+  const Vec3& s = body.container.size;
+  file.list("container_size", std::vector<double>(s.data(), s.data() + 3), "m");
+  file.list("cell_edges_by_column", std::vector<double>(body.cell.h.data(), body.cell.h.data() + 9), "m");
+  file.list("cell_origin", std::vector<double>(body.cell.origin.data(), body.cell.origin.data() + 3), "m");
+  file.list("summary",
+            std::vector<double>{double(body.cell.periodic), body.relative_density, body.coordination_number,
+                                body.mean_overlap, double(body.steps)},
+            "");
+  file.commit(Durability::power_loss);
+}
+
+GreenBody read_specimen(const std::filesystem::path& path) {
+  const Hdf5Reader file(path);
+  GreenBody body;
+  const auto position = file.read<double>("position");
+  body.particles.reference_radius = file.read<double>("radius");
+  body.particles.material = file.read<std::uint8_t>("material");
+  body.particles.id = file.read<std::uint32_t>("id");
+  const auto size = file.read<double>("container_size"), h = file.read<double>("cell_edges_by_column"),
+             origin = file.read<double>("cell_origin"), summary = file.read<double>("summary");
+  const std::size_t n = body.particles.reference_radius.size();
+  if (position.size() != 3 * n || body.particles.material.size() != n || body.particles.id.size() != n ||
+      size.size() != 3 || h.size() != 9 || origin.size() != 3 || summary.size() != 5)
+    throw InputError(path.string() + " is not a specimen that Densify wrote (its lists differ in length)");
+  for (std::size_t p = 0; p < n; ++p)
+    body.particles.body.push_back(
+        {Eigen::Map<const Vec3>(&position[3 * p]), body.particles.reference_radius[p], Vec3::Zero(), 1});
+  body.container.size = Eigen::Map<const Vec3>(size.data());  // the rest of the container is the scene's
+  body.cell.h = Eigen::Map<const Mat3>(h.data());
+  body.cell.origin = Eigen::Map<const Vec3>(origin.data());
+  body.cell.periodic = summary[0] != 0;
+  body.relative_density = summary[1];
+  body.coordination_number = summary[2];
+  body.mean_overlap = summary[3];
+  body.steps = std::uint64_t(summary[4]);
+  return body;
+}
+
+}  // namespace densify::dem

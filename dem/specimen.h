@@ -1,0 +1,30 @@
+#pragma once
+// From a scene to the powder in its container: drawn and packed, or imported.
+
+#include "dem/io/scene.h"
+#include "dem/powder/compaction.h"
+
+namespace densify::dem {
+
+/// The specimen at the start of the process, with what is worth reporting of its making.
+struct Specimen {
+  GreenBody body;
+  SizeStatistics sizes;            ///< of all diameters, bins of a twentieth of the range
+  std::vector<std::string> lines;  ///< the same in words, for the log
+};
+
+/// Draws and packs, or imports, what the scene asks for.  Throws InputError: empty powder, unreachable density,
+/// overlapping import, particle outside its container, ...
+Specimen make_specimen(const Scene&, int threads, const PackingProgress&);
+
+/// The diameters [m] and materials that the scene's powder or import asks for, without packing them.
+PowderSample particles_of(const Scene&);
+
+/// Everything that a Simulation of the scene needs.
+Setup make_setup(const Scene&, const GreenBody&, int threads);
+
+/// Writes and reads a finished specimen bit for bit, so that a resumed run need not pack again.
+void write_specimen(const std::filesystem::path&, const GreenBody&);
+GreenBody read_specimen(const std::filesystem::path&);
+
+}  // namespace densify::dem
