@@ -8,7 +8,7 @@
 #include "base/check.h"
 #include "base/nearest.h"
 
-namespace densify {
+namespace densify::app {
 
 namespace {
 
@@ -72,4 +72,4 @@ int bench_command(const BenchOptions& options) {
   return 3;
 }
 
-}  // namespace densify
+}  // namespace densify::app

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace densify {
+namespace densify::app {
 
 struct BenchOptions {
   std::vector<std::string> packings;  ///< m2k, m20k, p1751; none given: all three
@@ -19,4 +19,4 @@ struct BenchOptions {
 /// from those of a plain double loop.  Throws InputError for an unknown name, FileError when the packings are missing.
 int bench_command(const BenchOptions&);
 
-}  // namespace densify
+}  // namespace densify::app

@@ -6,7 +6,7 @@
 #include "app/bench_job.h"
 #include "dem/law/friction.h"
 
-namespace densify {
+namespace densify::app {
 
 namespace {
 
@@ -105,4 +105,4 @@ double force_deviation(dem::Simulation& simulation) {
                   deviation(plain.torque, now.torque, plain.largest_torque));
 }
 
-}  // namespace densify
+}  // namespace densify::app

@@ -10,7 +10,7 @@
 #include "base/data_path.h"
 #include "dem/io/particle_import.h"
 
-namespace densify {
+namespace densify::app {
 
 namespace {
 
@@ -151,4 +151,4 @@ std::string to_json(const BenchResult& r) {
       r.slowest_over_fastest, r.peak_resident);
 }
 
-}  // namespace densify
+}  // namespace densify::app

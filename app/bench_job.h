@@ -5,7 +5,7 @@
 
 #include "dem/simulation.h"
 
-namespace densify {
+namespace densify::app {
 
 /// A: linear spring and damper, no friction, no rotation.  B: A with friction and rotation.  S: sintering necks
 /// (Maxwell) at constant temperature.
@@ -47,4 +47,4 @@ BenchResult run_job(const BenchJob&);
 /// The result as one JSON object on one line.
 std::string to_json(const BenchResult&);
 
-}  // namespace densify
+}  // namespace densify::app

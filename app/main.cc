@@ -1,35 +1,91 @@
-// The command line: only what it can answer truthfully so far.
+// The command line: one function a command, nothing else.
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <string>
-#include <string_view>
 
+#include "app/bench.h"
+#include "app/check.h"
+#include "app/run.h"
+#include "base/check.h"
 #include "base/version.h"
+#include "dem/io/scene.h"
 
 namespace {
 
-constexpr const char* kUsage =
-    "usage: densify COMMAND\n"
-    "  help        this text\n"
-    "  --version   release number and git revision\n";
+constexpr const char* exit_codes =
+    "Exit codes: 0 done; 1 internal error; 2 bad input; 3 run stopped by a guard; 4 file error; 5 interrupted, "
+    "checkpoint written.";
 
-int main_with(std::string_view command) {
-  if (command == "--version") {
-    const std::string line =
-        "densify " + std::string(densify::version()) + " (" + std::string(densify::git_revision()) + ")";
-    std::puts(line.c_str());
-    return 0;
+int run_main(int argc, char** argv) {
+  CLI::App app{"Densify: how a powder becomes a solid part under heat and pressure."};
+  app.name("densify");
+  app.footer(exit_codes);
+  app.set_version_flag("--version", "densify " + std::string(densify::version()) + " (" +
+                                        std::string(densify::git_revision()) + ")");
+  app.require_subcommand(1);
+
+  densify::app::RunCommand run;
+  CLI::App* run_command = app.add_subcommand("run", "Run a scene to its end");
+  run_command->add_option("SCENE", run.scene, "A scene file, or a folder that holds scene.toml")->required();
+  run_command->add_option("--out", run.folder, "Folder of the results; without it results/NAME");
+  run_command->add_option("--set", run.overrides, "path.to.key=value, again for each")->take_all();
+  run_command->add_option("--threads", run.threads, "Threads; results do not depend on their number")
+      ->check(CLI::Range(1, 1024));
+  run_command->add_flag("--resume", run.resume, "Continue from the checkpoint in the folder of the results");
+  run_command->add_flag("--quiet", run.quiet, "No progress, no summary");
+
+  densify::app::CheckCommand check;
+  CLI::App* check_command =
+      app.add_subcommand("check", "Check a scene: memory, critical step, number of steps, expected time; runs nothing");
+  check_command->add_option("SCENE", check.scene, "A scene file, or a folder that holds scene.toml")->required();
+  check_command->add_option("--set", check.overrides, "path.to.key=value, again for each")->take_all();
+  check_command->add_option("--threads", check.threads, "Threads")->check(CLI::Range(1, 1024));
+
+  densify::app::BenchOptions bench;
+  CLI::App* bench_command = app.add_subcommand("bench", "Time the contact pass on the shipped packings and check it");
+  bench_command->add_option("--packing", bench.packings, "m2k, m20k or p1751; without it all three")->take_all();
+  bench_command->add_option("--case", bench.cases, "A (no friction), B (friction) or S (sintering); without it A and B")
+      ->take_all();
+  bench_command->add_option("--threads", bench.threads, "Threads")->check(CLI::Range(1, 1024));
+  bench_command->add_option("--steps", bench.steps, "Steps of one repeat; without it as many as take half a second");
+  bench_command->add_flag("--json", bench.json, "JSON instead of a table");
+
+  CLI::App* scene_command =
+      app.add_subcommand("help-scene", "Every key of a scene with unit, range, default and meaning");
+  CLI::App* help_command = app.add_subcommand("help", "This text");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : 2;
   }
-  if (command == "help" || command == "--help") {
-    std::fputs(kUsage, stdout);
-    return 0;
-  }
-  std::fprintf(stderr, "densify: %s: unknown command\n%s", std::string(command).c_str(), kUsage);
-  return 2;
+  if (run_command->parsed()) return densify::app::run_command(run);
+  if (check_command->parsed()) return densify::app::check_command(check);
+  if (bench_command->parsed()) return densify::app::bench_command(bench);
+  if (scene_command->parsed()) std::fputs(densify::dem::scene_help().c_str(), stdout);
+  if (help_command->parsed()) std::fputs(app.help().c_str(), stdout);
+  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return main_with(argc > 1 ? argv[1] : "help");
+  auto fail = [](const std::exception& error, int code) {
+    std::fprintf(stderr, "densify: %s\n", error.what());
+    return code;
+  };
+  try {
+    return run_main(argc, argv);
+  } catch (const densify::InputError& error) {
+    return fail(error, 2);
+  } catch (const densify::RunError& error) {
+    return fail(error, 3);
+  } catch (const densify::FileError& error) {
+    return fail(error, 4);
+  } catch (const densify::Interrupted& error) {
+    return fail(error, 5);
+  } catch (const std::exception& error) {
+    return fail(error, 1);
+  }
 }

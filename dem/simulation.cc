@@ -217,15 +217,37 @@ void Simulation::compute_forces(Recording* record) {
       state_.particles.force[p] += real_mass(p) * setup_.integration.gravity;
 }
 
+StepLimit Simulation::step_limit() {
+  const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
+  return critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact, state_.walls, punch,
+                       {state_.time, state_.last_step}, setup_.integration.rule);
+}
+
+void Simulation::require_stable_step() {
+  const double fixed = setup_.integration.fixed_step;
+  if (std::isnan(fixed)) return;
+  const StepLimit limit = step_limit();
+  if (fixed > limit.critical)
+    throw InputError("integration.fixed_step: " + std::to_string(fixed) + " s is above the stability limit of " +
+                     std::to_string(limit.critical) + " s (particle " +
+                     std::to_string(state_.particles.id[limit.particle]) +
+                     "); use a smaller one, a larger mass_scaling, or leave it out");
+}
+
 double Simulation::choose_step() {
   const auto& settings = setup_.integration;
   if (state_.steps % std::uint64_t(settings.limit_interval) == 0 || state_.stable_step == 0) {
-    const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
-    const StepLimit limit = critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact,
-                                          state_.walls, punch, {state_.time, state_.last_step}, settings.rule);
+    const StepLimit limit = step_limit();
     state_.critical_step = limit.critical;
     state_.stable_step = settings.step_safety * limit.critical;
-    if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
+    if (!std::isnan(settings.fixed_step)) {
+      if (settings.fixed_step > limit.critical)
+        throw RunError("integration.fixed_step of " + std::to_string(settings.fixed_step) +
+                       " s has come above the stability limit of " + std::to_string(limit.critical) +
+                       " s (particle " + std::to_string(state_.particles.id[limit.particle]) + ", process time " +
+                       std::to_string(state_.time) + " s); use a smaller one, or leave it out");
+      state_.stable_step = settings.fixed_step;
+    }
     if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
     if (state_.punch.mass > 0) state_.punch.tune(limit.punch_stiffness, setup_.container.punch_settings.damping_ratio);
   }

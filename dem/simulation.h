@@ -95,6 +95,11 @@ class Simulation {
     move();
   }
 
+  /// Limit of the step in the present state [s], before the safety factor.
+  StepLimit step_limit();
+  /// Throws InputError when a fixed step is above the present limit.
+  void require_stable_step();
+
   bool finished() const { return state_.time >= setup_.schedule.end(); }
   /// True when every neck of a packing that has necks is at equilibrium.
   bool all_at_equilibrium() const;

@@ -91,25 +91,19 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
   return temporary;
 }
 
-void write_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> parts) {
+void write_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> parts,
+                      Durability durability) {
   const auto temporary = temporary_beside(path);
   {
     Descriptor d(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
     if (d.number < 0) detail::throw_file_error(path, "write this file", errno);
     for (const auto part : parts)
       if (const int error = detail::write_all(d.number, part)) abandon(temporary, path, error);
+    if (durability == Durability::power_loss && ::fsync(d.number) != 0) abandon(temporary, path, errno);
     if (const int error = d.close()) abandon(temporary, path, error);
   }
-  replace_atomically(temporary, path);
-}
-
-void replace_atomically(const std::filesystem::path& temporary, const std::filesystem::path& path) {
-  {
-    const Descriptor d(::open(temporary.c_str(), O_RDONLY | O_CLOEXEC));
-    if (d.number < 0 || ::fsync(d.number) != 0) abandon(temporary, path, errno);
-  }
   if (::rename(temporary.c_str(), path.c_str()) != 0) abandon(temporary, path, errno);
-  sync_folder(folder_of(path));
+  if (durability == Durability::power_loss) sync_folder(folder_of(path));
 }
 
 std::string read_whole_file(const std::filesystem::path& path) {

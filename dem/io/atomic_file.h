@@ -11,13 +11,16 @@ namespace densify::dem {
 /// The name under which a file is written before it takes its place: beside it, with ".tmp" appended.
 std::filesystem::path temporary_beside(const std::filesystem::path&);
 
-/// Replaces the file at `path` by the parts one after the other: temporary file, fsync, rename, fsync of the folder.
+/// What a file outlasts, and so how long writing it takes: some 10 ms a file for the loss of power.
+enum class Durability {
+  kill,       ///< temporary file and rename
+  power_loss  ///< temporary file, fsync, rename, fsync of the folder
+};
+
+/// Replaces the file at `path` by the parts one after the other, under a temporary name first.
 /// Throws FileError with path and cause (full disk, missing folder or permission); the old file is then untouched and
 /// the temporary one removed.
-void write_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> parts);
-
-/// Moves a finished temporary file to its place: fsync, rename, fsync of the folder.  Throws as write_atomically.
-void replace_atomically(const std::filesystem::path& temporary, const std::filesystem::path& path);
+void write_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> parts, Durability);
 
 /// The content of a file.  Throws FileError with path and cause.
 std::string read_whole_file(const std::filesystem::path& path);

@@ -47,7 +47,7 @@ int format_of(std::string_view bytes) {
 
 void write_checkpoint(const std::filesystem::path& path, const Simulation& simulation, const RunPosition& position,
                       const CheckpointOwner& owner) {
-  Hdf5Writer file(path, Hdf5Storage::memory);
+  Hdf5Writer file(path);
   file.attribute("/", "scene", owner.scene);
   file.attribute("/", "densify_version", owner.version);
   file.list<std::uint64_t>("/run/counts", {position.history_rows, position.history_bytes, position.snapshots}, "");
@@ -55,7 +55,7 @@ void write_checkpoint(const std::filesystem::path& path, const Simulation& simul
   file.list("/run/numbers", position.numbers, "");
   write_state(file, simulation.state());
   const std::string image = file.image();
-  write_atomically(path, {header_of(image, checkpoint_format), image});
+  write_atomically(path, {header_of(image, checkpoint_format), image}, Durability::power_loss);
 }
 
 RunPosition read_checkpoint(const std::filesystem::path& path, Simulation& simulation, const CheckpointOwner& owner) {
@@ -83,8 +83,8 @@ RunPosition read_checkpoint(const std::filesystem::path& path, Simulation& simul
     position.numbers = file.read<double>("/run/numbers");
     simulation.restore(read_state(file, simulation));
     return position;
-  } catch (const FileError& missing) {  // the checksum is right, so this is another program's file
-    refuse(path, damaged + ": " + missing.what());
+  } catch (const FileError& problem) {  // the checksum is right, so the file was written for something else
+    refuse(path, "the checkpoint does not fit: " + std::string(problem.what()));
   }
 }
 

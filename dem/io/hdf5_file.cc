@@ -5,7 +5,6 @@
 #include <type_traits>
 
 #include "base/check.h"
-#include "dem/io/atomic_file.h"
 
 namespace densify::dem {
 
@@ -143,7 +142,9 @@ std::string Hdf5Reader::text(const std::string& name) const {
 
 template <class T>
 T Hdf5Reader::attribute(const std::string& object, const std::string& name) const {
-  const Hdf5Id a(H5Aopen_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  // By way of the object: H5Aopen_by_name through an external link takes texts from the heap of the linking file.
+  const Hdf5Id o(H5Oopen(file_.get(), object.c_str(), H5P_DEFAULT), H5Oclose);
+  const Hdf5Id a(o.valid() ? H5Aopen(o.get(), name.c_str(), H5P_DEFAULT) : -1, H5Aclose);
   const Hdf5Id space(a.valid() ? H5Aget_space(a.get()) : -1, H5Sclose);
   const std::string what = "read attribute " + name + " of " + object;
   if (!space.valid() || H5Sget_simple_extent_npoints(space.get()) != 1) fail(path_, what);
@@ -165,23 +166,15 @@ template double Hdf5Reader::attribute(const std::string&, const std::string&) co
 template std::uint64_t Hdf5Reader::attribute(const std::string&, const std::string&) const;
 template std::string Hdf5Reader::attribute(const std::string&, const std::string&) const;
 
-Hdf5Writer::Hdf5Writer(std::filesystem::path path, Hdf5Storage storage) : path_(std::move(path)), storage_(storage) {
+Hdf5Writer::Hdf5Writer(std::filesystem::path path) : path_(std::move(path)) {
   silence();
   make_groups_ = Hdf5Id(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(make_groups_.get(), 1);
   no_times_ = Hdf5Id(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(no_times_.get(), false);  // the same content gives the same bytes
-  const bool memory = storage == Hdf5Storage::memory;
-  const Hdf5Id access = memory ? memory_access() : Hdf5Id(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  file_ = Hdf5Id(H5Fcreate(temporary_beside(path_).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
+  const std::string name = path_.string() + " being written";
+  file_ = Hdf5Id(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, memory_access().get()), H5Fclose);
   if (!file_.valid()) fail(path_, "write this file");
-}
-
-Hdf5Writer::~Hdf5Writer() {
-  if (!file_.valid()) return;
-  file_.reset();
-  std::error_code ignored;
-  if (storage_ == Hdf5Storage::disk) std::filesystem::remove(temporary_beside(path_), ignored);
 }
 
 void Hdf5Writer::group(const std::string& name) {
@@ -274,19 +267,8 @@ std::string Hdf5Writer::image() {
   return bytes;
 }
 
-void Hdf5Writer::commit() {
-  if (storage_ == Hdf5Storage::memory) {
-    write_atomically(path_, {image()});
-    file_.reset();
-    return;
-  }
-  if (H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) < 0) fail(path_, "write this file");
-  if (!file_.reset()) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary_beside(path_), ignored);
-    fail(path_, "write this file");
-  }
-  replace_atomically(temporary_beside(path_), path_);
+void Hdf5Writer::commit(Durability durability) {
+  write_atomically(path_, {image()}, durability);
 }
 
 }  // namespace densify::dem

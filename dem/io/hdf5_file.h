@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "dem/io/atomic_file.h"
 #include "dem/state/particles.h"
 
 namespace densify::dem {
@@ -75,19 +76,13 @@ class Hdf5Reader {
   Hdf5Id file_;
 };
 
-/// Where a file is put together before it takes its place.
-enum class Hdf5Storage {
-  memory,  ///< at once to the disk in the end: the rule
-  disk     ///< under a temporary name: for what may be larger than the memory
-};
-
-/// A file in the making.  Datasets and groups are named by their path inside it; missing groups on the way are made.
+/// A file in the making, put together in memory: the library itself must never meet a full disk, for it does not always
+/// survive a failed write.  Datasets and groups are named by their path inside it; missing groups on the way are made.
 /// Until commit() nothing at `path` changes; without it nothing ever does.
 class Hdf5Writer {
  public:
   /// This and all members throw FileError with path, object and cause.
-  Hdf5Writer(std::filesystem::path path, Hdf5Storage);
-  ~Hdf5Writer();
+  explicit Hdf5Writer(std::filesystem::path path);
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
 
@@ -108,10 +103,10 @@ class Hdf5Writer {
   /// Copies an object with all it holds.
   void copy(const Hdf5Reader& from, const std::string& source, const std::string& target);
 
-  /// The bytes of the file as it stands (storage in memory only).
+  /// The bytes of the file as it stands.
   std::string image();
   /// Puts the file in its place, atomically.
-  void commit();
+  void commit(Durability);
 
  private:
   void write(const std::string& name, const void* values, std::int64_t type, Hdf5Shape, int rank,
@@ -119,7 +114,6 @@ class Hdf5Writer {
   void write_attribute(const std::string& object, const std::string& name, std::int64_t type, const void* value);
 
   std::filesystem::path path_;
-  Hdf5Storage storage_;
   Hdf5Id file_, make_groups_, no_times_;
 };
 

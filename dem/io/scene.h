@@ -2,7 +2,10 @@
 // What a scene file says, as plain data in SI: from the TOML text to the pieces a Simulation is made of.
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "dem/powder/powder.h"
 #include "dem/simulation.h"
@@ -17,26 +20,26 @@ enum class PackingMethod : std::uint8_t {
 
 struct PackingSettings {
   PackingMethod method = PackingMethod::gravity_compaction;
-  double green_density = 0.60;       ///< relative density of the finished specimen
-  double friction = 0;               ///< between particles while packing
-  double largest_overlap = 0.02;     ///< mean overlap over mean radius above which the density counts as unreachable
-  std::uint64_t seed = 1;            ///< of the placement
+  double green_density = 0.60;    ///< relative density of the finished specimen
+  double friction = 0;            ///< between particles while packing
+  double largest_overlap = 0.02;  ///< mean overlap over mean radius above which the density counts as unreachable
+  std::uint64_t seed = 1;         ///< of the placement
 };
 
 /// Particles from a file instead of a powder.
 struct ImportSettings {
   std::filesystem::path file;
   enum class Format : std::uint8_t { csv, lammps } format = Format::csv;
-  double length_unit = 1;            ///< metres per unit of the file [m]
-  std::vector<std::string> types;    ///< material name of LAMMPS type 1, 2, ...
-  double largest_overlap = 0.05;     ///< overlap over the smaller radius that is still accepted
+  double length_unit = 1;          ///< metres per unit of the file [m]
+  std::vector<std::string> types;  ///< material name of LAMMPS type 1, 2, ...
+  double largest_overlap = 0.05;   ///< overlap over the smaller radius that is still accepted
 };
 
 struct OutputSettings {
-  double history_interval = unset;    ///< process time between rows [s]; unset: 1/400 of the process
-  double snapshot_interval = unset;   ///< [s]; unset: at the ends of stages only
-  double checkpoint_interval = 60;    ///< wall time between checkpoints [s]
-  bool visualisation = true;          ///< ParaView files with every snapshot
+  double history_interval = unset;   ///< process time between rows [s]; unset: 1/400 of the process
+  double snapshot_interval = unset;  ///< [s]; unset: at the ends of stages only
+  double checkpoint_interval = 60;   ///< wall time between checkpoints [s]
+  bool visualisation = true;         ///< ParaView files with every snapshot
 };
 
 /// When a run ends before its schedule does.
@@ -56,12 +59,12 @@ struct Scene {
   IntegrationSettings integration;
   Schedule schedule{293.15, 0.0, {{"", 1.0, 293.15, 0.0}}};
   std::vector<Load> loads;
-  double reference_temperature = 293.15;   ///< [K]
+  double reference_temperature = 293.15;  ///< [K]
   StopWhen stop_when = StopWhen::schedule_ends;
   OutputSettings output;
 
-  std::filesystem::path file;   ///< where it was read, empty for text
-  std::string effective_text;   ///< TOML with every key in use; reads back to the same scene
+  std::filesystem::path file;  ///< where it was read, empty for text
+  std::string effective_text;  ///< TOML with every key in use; reads back to the same scene
 };
 
 /// Reads and checks a scene (a file, or a folder that holds scene.toml); overrides are "path.to.key=value".

@@ -24,7 +24,7 @@ std::vector<double> flat(const std::vector<Body>& body) {
 
 /// Refuses a state in which something does not fit.
 void require(bool fits, const std::string& what) {
-  if (!fits) throw InputError("the checkpoint does not fit its scene: " + what);
+  if (!fits) throw FileError(what + " does not fit the scene");
 }
 
 std::vector<Vec3> read_vectors(const Hdf5Reader& file, const std::string& name, std::size_t rows) {
@@ -219,7 +219,9 @@ void write_state(Hdf5Writer& file, const State& state) {
   file.table("/walls/contact_tangential", tangential, "m");
 
   const Punch& u = state.punch;
-  file.list<double>("/state/punch", {u.mass, u.area, u.damping, u.memory, u.velocity, u.mean_velocity}, "");
+  file.list<double>(
+      "/state/punch",
+      {u.mass, u.area, u.damping, u.memory, u.velocity, u.mean_velocity, u.mean_acceleration}, "");
   file.list<std::uint8_t>("/state/cell_periodic", {std::uint8_t(state.cell.periodic)}, "");
   file.list("/state/cell_h", flat(state.cell.h), "m");
   const Vec3& o = state.cell.origin;
@@ -250,8 +252,8 @@ State read_state(const Hdf5Reader& file, const Simulation& simulation) {
     s.walls.contacts().push_back({particle[c], wall[c], tangential[c]});
   }
 
-  const auto u = read_list<double>(file, "/state/punch", 6);
-  s.punch = {u[0], u[1], u[2], u[3], u[4], u[5]};
+  const auto u = read_list<double>(file, "/state/punch", 7);
+  s.punch = {u[0], u[1], u[2], u[3], u[4], u[5], u[6]};
   s.cell.periodic = read_list<std::uint8_t>(file, "/state/cell_periodic", 1)[0] != 0;
   require(s.cell.periodic == now.cell.periodic, "/state/cell_periodic");
   s.cell.h = read_matrix(file, "/state/cell_h");

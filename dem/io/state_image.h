@@ -10,7 +10,7 @@ namespace densify::dem {
 void write_state(Hdf5Writer&, const State&);
 
 /// Reads a state for a simulation, whose setup says which histories there are and how many materials and walls.
-/// Throws InputError when anything does not fit, FileError when a dataset is missing.
+/// Throws FileError naming what is missing or does not fit.
 State read_state(const Hdf5Reader&, const Simulation&);
 
 }  // namespace densify::dem

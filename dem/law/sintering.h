@@ -183,7 +183,8 @@ struct SinteringContact {
   void change_phase(const NormalInput& in, NeckHistory& h) const {
     const double time = in.time, done = progress(h, time);
     if (settings.model == SinteringModel::viscous && (active ? h.phase == NeckPhase::dormant : flows(h.phase))) {
-      if (!active) bond_takes_over(in, h);  // a dashpot has no elastic state to fade from: the bond carries its force
+      // A dashpot has no elastic state to fade from: the bond carries its force and the sintering force that ends here.
+      if (!active) bond_takes_over(in, h, sintering_force(h.radius, in.sintering_radius));
       h.phase = active ? NeckPhase::sintering : NeckPhase::dormant;
       return;
     }
@@ -209,13 +210,13 @@ struct SinteringContact {
     }
   }
 
-  void bond_takes_over(const NormalInput& in, NeckHistory& h) const {
-    h.elastic = loose.spring.displacement(viscosity(h.radius) * in.rate, in.elastic_radius);
+  void bond_takes_over(const NormalInput& in, NeckHistory& h, double sintering) const {
+    h.elastic = loose.spring.displacement(viscosity(h.radius) * in.rate + sintering, in.elastic_radius);
   }
 
   void reach_equilibrium(const NormalInput& in, NeckHistory& h) const {
     if (h.phase == NeckPhase::arriving) return;
-    if (settings.model == SinteringModel::viscous) bond_takes_over(in, h);
+    if (settings.model == SinteringModel::viscous) bond_takes_over(in, h, 0);  // F_sint fades on its own
     const double done = h.phase == NeckPhase::activating     ? 1 - progress(h, in.time)
                         : h.phase == NeckPhase::deactivating ? progress(h, in.time)
                                                              : 0.0;

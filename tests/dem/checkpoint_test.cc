@@ -1,5 +1,9 @@
 #include "dem/io/checkpoint.h"
 
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "base/check.h"
 #include "tests/dem/scratch_folder.h"
 #include "tests/dem/small_packings.h"
@@ -16,6 +20,10 @@ struct Packing {
   const char* name;
   Setup (*make)(int threads);
 };
+
+void PrintTo(const Packing& packing, std::ostream* out) {
+  *out << packing.name;
+}
 
 class EveryPacking : public ::testing::TestWithParam<Packing> {};
 
@@ -74,6 +82,25 @@ INSTANTIATE_TEST_SUITE_P(Checkpoint, EveryPacking,
                          ::testing::Values(Packing{"periodic", periodic_packing},
                                            Packing{"cylinder", cylinder_packing}),
                          [](const auto& test) { return test.param.name; });
+
+// A run killed while it writes checkpoint after checkpoint leaves one that can be read, the first or a later one.
+TEST(Checkpoint, KilledWhileWriting) {
+  const ScratchFolder folder;
+  Simulation simulation(cylinder_packing(1));
+  write_checkpoint(folder / "c", simulation, {}, owner);
+  std::uint64_t latest = 0;
+  for (int round = 0; round < 20; ++round) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0)
+      for (RunPosition position;; ++position.snapshots) write_checkpoint(folder / "c", simulation, position, owner);
+    ::usleep(useconds_t(500 + 1700 * round));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    latest = std::max(latest, read_checkpoint(folder / "c", simulation, owner).snapshots);
+  }
+  EXPECT_GT(latest, 0u);  // the children did write
+}
 
 TEST(Checkpoint, CarriesThePositionOfTheRun) {
   const ScratchFolder folder;

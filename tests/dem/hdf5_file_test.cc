@@ -1,9 +1,11 @@
 #include "dem/io/hdf5_file.h"
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <limits>
 
 #include "base/check.h"
-#include "dem/io/atomic_file.h"
 #include "tests/dem/scratch_folder.h"
 
 using namespace densify;
@@ -28,15 +30,13 @@ void fill(Hdf5Writer& file) {
 
 }  // namespace
 
-class EveryStorage : public ::testing::TestWithParam<Hdf5Storage> {};
-
-TEST_P(EveryStorage, RoundTrip) {
+TEST(Hdf5File, RoundTrip) {
   const ScratchFolder folder;
   {
-    Hdf5Writer file(folder / "f.h5", GetParam());
+    Hdf5Writer file(folder / "f.h5");
     fill(file);
     EXPECT_FALSE(std::filesystem::exists(folder / "f.h5"));
-    file.commit();
+    file.commit(Durability::power_loss);
   }
   EXPECT_EQ(folder.entries(), 1u);
   const Hdf5Reader file(folder / "f.h5");
@@ -60,51 +60,76 @@ TEST_P(EveryStorage, RoundTrip) {
   EXPECT_FALSE(file.has("/a/shallow/numbers"));
 }
 
-TEST_P(EveryStorage, WithoutCommitNothingChanges) {
+TEST(Hdf5File, WithoutCommitNothingChanges) {
   const ScratchFolder folder;
   write_plainly(folder / "f.h5", "old");
   {
-    Hdf5Writer file(folder / "f.h5", GetParam());
+    Hdf5Writer file(folder / "f.h5");
     fill(file);
   }
   EXPECT_EQ(content_of(folder / "f.h5"), "old");
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-TEST_P(EveryStorage, MissingFolderNamed) {
+TEST(Hdf5File, MissingFolderNamed) {
   const ScratchFolder folder;
   const auto message = message_of<FileError>([&] {
-    Hdf5Writer file(folder / "nowhere/f.h5", GetParam());
-    file.commit();
+    Hdf5Writer file(folder / "nowhere/f.h5");
+    file.commit(Durability::power_loss);
   });
   EXPECT_NE(message.find("nowhere/f.h5"), std::string::npos) << message;
   EXPECT_NE(message.find("No such file"), std::string::npos) << message;
 }
 
 // The same content gives the same bytes: no time of writing in the file.
-TEST_P(EveryStorage, Reproducible) {
+TEST(Hdf5File, Reproducible) {
   const ScratchFolder folder;
   for (const char* name : {"f.h5", "g.h5"}) {
-    Hdf5Writer file(folder / name, GetParam());
+    Hdf5Writer file(folder / name);
     fill(file);
-    file.commit();
+    file.commit(Durability::power_loss);
   }
   EXPECT_EQ(content_of(folder / "f.h5"), content_of(folder / "g.h5"));
 }
-
-INSTANTIATE_TEST_SUITE_P(Hdf5File, EveryStorage, ::testing::Values(Hdf5Storage::memory, Hdf5Storage::disk),
-                         [](const auto& test) { return test.param == Hdf5Storage::memory ? "memory" : "disk"; });
 
 // /dev/full fails every write with ENOSPC.
 TEST(Hdf5File, FullDiskKeepsOldFile) {
   const ScratchFolder folder;
   write_plainly(folder / "f.h5", "old");
   std::filesystem::create_symlink("/dev/full", temporary_beside(folder / "f.h5"));
-  Hdf5Writer file(folder / "f.h5", Hdf5Storage::memory);
-  fill(file);
-  const auto message = message_of<FileError>([&] { file.commit(); });
+  const auto message = message_of<FileError>([&] {
+    Hdf5Writer file(folder / "f.h5");
+    fill(file);
+    file.commit(Durability::power_loss);
+  });
   EXPECT_NE(message.find("No space left"), std::string::npos) << message;
   EXPECT_EQ(content_of(folder / "f.h5"), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+// The disk fills up halfway, here by a limit on the size of a file; afterwards the library still works.
+TEST(Hdf5File, DiskFullHalfwayKeepsOldFile) {
+  const ScratchFolder folder;
+  write_plainly(folder / "f.h5", "old");
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit;
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit tight{100000, limit.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tight), 0);
+  const auto message = message_of<FileError>([&] {
+    Hdf5Writer file(folder / "f.h5");
+    for (const char* name : {"/a", "/b", "/c"}) file.list(name, std::vector<double>(100000, 1.0), "m");
+    file.commit(Durability::power_loss);
+  });
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_NE(message.find("File too large"), std::string::npos) << message;
+  EXPECT_EQ(content_of(folder / "f.h5"), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+  Hdf5Writer file(folder / "f.h5");
+  fill(file);
+  file.commit(Durability::power_loss);
+  EXPECT_EQ(Hdf5Reader(folder / "f.h5").attribute<double>("/a", "time"), 0.1);
 }
 
 TEST(Hdf5File, ReadingMistakesNamed) {
@@ -112,7 +137,7 @@ TEST(Hdf5File, ReadingMistakesNamed) {
   EXPECT_THROW(Hdf5Reader(folder / "missing.h5"), FileError);
   write_plainly(folder / "text.h5", "not HDF5 at all");
   EXPECT_THROW(Hdf5Reader(folder / "text.h5"), FileError);
-  Hdf5Writer writer(folder / "f.h5", Hdf5Storage::memory);
+  Hdf5Writer writer(folder / "f.h5");
   fill(writer);
   const Hdf5Reader file(folder / "f.h5", writer.image());
   EXPECT_NE(message_of<FileError>([&] { file.read<double>("/a/absent"); }).find("/a/absent"), std::string::npos);

@@ -83,7 +83,7 @@ inline Setup cylinder_packing(int threads) {
 }
 
 inline void run_steps(Simulation& simulation, int steps) {
-  for (int k = 0; k < steps; ++k) simulation.advance(nullptr);
+  for (int k = 0; k < steps; ++k) simulation.advance();
 }
 
 /// Every bit of a state that a trajectory depends on, in one string.

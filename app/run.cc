@@ -1,0 +1,129 @@
+#include "app/run.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+#include "base/version.h"
+#include "dem/run.h"
+
+namespace densify::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> stop_requested{false};
+
+extern "C" void request_stop(int) { stop_requested = true; }
+
+std::string duration(double seconds) {
+  if (!(seconds >= 0)) return "-";
+  if (seconds < 100) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min {:.0f} s", std::floor(seconds / 60), std::fmod(seconds, 60.0));
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+/// A line that rewrites itself on a terminal; elsewhere one line at every tenth of the way.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO)) {}
+
+  void show(const dem::Progress& p) {
+    if (quiet_) return;
+    const bool packing = p.stage == "packing";
+    if (!terminal_) {
+      const int tenth = int(10 * p.share) + (packing ? 0 : 100);
+      if (tenth == last_tenth_) return;
+      last_tenth_ = tenth;
+    }
+    std::string line =
+        packing ? fmt::format("packing {:3.0f} %  left {}", 100 * p.share, duration(p.seconds_left))
+                : fmt::format("{:3.0f} %  {:<16.16s} t {:>8.4g} s  T {:6.1f} K  p {:6.2f} MPa  density {:.4f}  {:>9.3g} "
+                              "steps/s  left {}",
+                              100 * p.share, p.stage, p.time, p.temperature, p.pressure * 1e-6, p.relative_density,
+                              p.steps_per_second, duration(p.seconds_left));
+    if (terminal_) {
+      fmt::print(stderr, "\r{:<118s}", line);
+      std::fflush(stderr);
+      open_ = true;
+    } else {
+      fmt::print(stderr, "{}\n", line);
+    }
+  }
+  void say(const std::string& line) {
+    if (quiet_) return;
+    end();
+    fmt::print(stderr, "{}\n", line);
+  }
+  void end() {
+    if (open_) fmt::print(stderr, "\n");
+    open_ = false;
+  }
+
+ private:
+  bool quiet_, terminal_, open_ = false;
+  int last_tenth_ = -1;
+};
+
+void print_summary(const dem::RunSummary& s, const fs::path& folder, int threads) {
+  const dem::Measures& m = s.last;
+  fmt::print("\nrelative density {:.4f}", m.relative_density);
+  if (std::isfinite(m.relative_density_inner)) fmt::print(" (inner {:.4f})", m.relative_density_inner);
+  fmt::print(", coordination number {:.2f}", m.coordination_number);
+  if (m.mean_neck_radius > 0)
+    fmt::print(", mean neck radius {:.3g} um, {:.0f} % of the necks at equilibrium", m.mean_neck_radius * 1e6,
+               100 * m.equilibrium_fraction);
+  fmt::print("\n\n{:<28s}{:>10s}{:>8s}\n", "where the time went", "s", "%");
+  for (const auto& share : s.shares)
+    fmt::print("{:<28s}{:>10.2f}{:>8.1f}\n", share.what, share.seconds, 100 * share.seconds / s.wall_seconds);
+  fmt::print("{:<28s}{:>10.2f}{:>8.1f}\n", "total", s.wall_seconds, 100.0);
+  fmt::print("{} steps on {} thread{}, {} neighbour list builds, {:.1f} MB of state\n", s.steps, threads,
+             threads == 1 ? "" : "s", s.list_builds, double(s.bytes) * 1e-6);
+  fmt::print("warnings: {}\n", s.warnings.empty() ? "none" : std::to_string(s.warnings.size()));
+  for (const auto& w : s.warnings) fmt::print("  {}\n", w);
+  fmt::print("\nresults in {}\n", folder.string());
+}
+
+}  // namespace
+
+int run_command(const RunCommand& command) {
+  const dem::Scene scene = dem::read_scene(command.scene, command.overrides);
+  fs::path folder = command.folder;
+  if (folder.empty()) {
+    const fs::path given = fs::path(command.scene).lexically_normal();
+    const fs::path file = scene.file.lexically_normal();
+    std::string name = fs::is_directory(given) ? (given.has_filename() ? given : given.parent_path()).filename().string()
+                                               : file.stem().string();
+    if (!fs::is_directory(given) && name != "scene" && file.has_parent_path())
+      name = file.parent_path().filename().string() + "_" + name;
+    else if (name == "scene") name = fs::absolute(file).parent_path().filename().string();
+    folder = fs::path("results") / name;
+  }
+
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  ProgressLine line(command.quiet);
+  dem::RunOptions options;
+  options.folder = folder;
+  options.mode = command.resume ? dem::Continue::resume : dem::Continue::fresh;
+  options.threads = command.threads;
+  options.version = std::string(version());
+  options.progress = [&](const dem::Progress& p) { line.show(p); };
+  options.say = [&](const std::string& text) { line.say(text); };
+  options.stop = &stop_requested;
+  try {
+    const dem::RunSummary summary = dem::run(scene, options);
+    line.end();
+    if (!command.quiet) print_summary(summary, folder, command.threads);
+  } catch (...) {
+    line.end();
+    throw;
+  }
+  return 0;
+}
+
+}  // namespace densify::app

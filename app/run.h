@@ -1,0 +1,21 @@
+#pragma once
+// densify run: a scene from the command line, with progress, signals and a summary.
+
+#include <string>
+#include <vector>
+
+namespace densify::app {
+
+struct RunCommand {
+  std::string scene;
+  std::string folder;                  ///< empty: results/NAME
+  std::vector<std::string> overrides;  ///< path.to.key=value
+  int threads = 1;
+  bool resume = false;
+  bool quiet = false;
+};
+
+/// Returns the exit code; errors are thrown.
+int run_command(const RunCommand&);
+
+}  // namespace densify::app

@@ -1,0 +1,103 @@
+#include "dem/history_row.h"
+
+namespace densify::dem {
+
+namespace {
+
+bool has_walls(const Setup& s) {
+  return s.container.shape == ContainerShape::cylinder || s.container.shape == ContainerShape::box;
+}
+
+void add_tensor(std::vector<double>& row, const Mat3& t) {
+  for (auto [i, j] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}) row.push_back(t(i, j));
+}
+
+}  // namespace
+
+std::vector<double> HistoryMemory::numbers() const {
+  return {initial.size[0], initial.size[1], initial.size[2], initial.volume, density, time, punch_impulse, punch_time};
+}
+
+HistoryMemory HistoryMemory::from(std::span<const double> n) {
+  HistoryMemory m;
+  m.initial = {Vec3(n[0], n[1], n[2]), n[3]};
+  m.density = n[4];
+  m.time = n[5];
+  m.punch_impulse = n[6];
+  m.punch_time = n[7];
+  return m;
+}
+
+std::vector<HistoryColumn> history_columns(const Setup& setup) {
+  std::vector<HistoryColumn> c{{"time_s", "s"},
+                               {"stage", ""},
+                               {"temperature_K", "K"},
+                               {"pressure_Pa", "Pa"},
+                               {"relative_density", "1"},
+                               {"relative_density_inner", "1"},
+                               {"shrinkage_x", "1"},
+                               {"shrinkage_y", "1"},
+                               {"shrinkage_z", "1"},
+                               {"shrinkage_volume", "1"},
+                               {"densification_rate_per_s", "1/s"},
+                               {"coordination_number", "1"}};
+  auto tensor = [&](const std::string& name) {
+    for (const char* ij : {"xx", "yy", "zz", "xy", "xz", "yz"}) c.push_back({name + ij + "_Pa", "Pa"});
+  };
+  tensor("stress_");
+  if (setup.contact.sintering) {
+    tensor("sintering_stress_");
+    tensor("viscoelastic_stress_");
+    c.insert(c.end(), {{"mean_neck_radius_m", "m"}, {"neck_equilibrium_fraction", "1"}});
+  }
+  if (has_walls(setup))
+    c.insert(c.end(), {{"punch_pressure_Pa", "Pa"},
+                       {"punch_pressure_mean_Pa", "Pa"},
+                       {"bottom_pressure_Pa", "Pa"},
+                       {"lateral_pressure_Pa", "Pa"}});
+  c.insert(c.end(), {{"unbalanced_force_ratio", "1"},
+                     {"kinetic_over_elastic_energy", "1"},
+                     {"damping_force_share", "1"},
+                     {"largest_overlap", "1"},
+                     {"time_step_s", "s"},
+                     {"steps", "1"}});
+  return c;
+}
+
+std::vector<double> history_row(const Simulation& sim, const Measures& m, HistoryMemory& memory) {
+  const State& s = sim.state();
+  const Setup& setup = sim.setup();
+  const double rate = s.time > memory.time ? (m.relative_density - memory.density) / (s.time - memory.time) : 0.0;
+  std::vector<double> row{s.time,
+                          sim.temperature(),
+                          sim.pressure(),
+                          m.relative_density,
+                          m.relative_density_inner,
+                          m.envelope.size[0] / memory.initial.size[0],
+                          m.envelope.size[1] / memory.initial.size[1],
+                          m.envelope.size[2] / memory.initial.size[2],
+                          m.envelope.volume / memory.initial.volume,
+                          rate,
+                          m.coordination_number};
+  add_tensor(row, m.stress);
+  if (setup.contact.sintering) {
+    add_tensor(row, m.sintering_stress);
+    add_tensor(row, m.stress - m.sintering_stress);
+    row.insert(row.end(), {m.mean_neck_radius, m.equilibrium_fraction});
+  }
+  if (has_walls(setup)) {
+    const double area = setup.container.shape == ContainerShape::cylinder
+                            ? 0.25 * M_PI * setup.container.size[0] * setup.container.size[0]
+                            : setup.container.size[0] * setup.container.size[1];
+    const double mean = memory.punch_time > 0 ? memory.punch_impulse / memory.punch_time / area : m.punch_pressure;
+    row.insert(row.end(), {m.punch_pressure, mean, m.bottom_pressure, m.lateral_pressure});
+  }
+  row.insert(row.end(), {m.unbalanced_force_ratio, m.elastic_energy > 0 ? m.kinetic_energy / m.elastic_energy : unset,
+                         m.damping_share, m.largest_overlap, s.last_step, double(s.steps)});
+  memory.density = m.relative_density;
+  memory.time = s.time;
+  memory.punch_impulse = memory.punch_time = 0;
+  return row;
+}
+
+}  // namespace densify::dem

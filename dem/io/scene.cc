@@ -1,0 +1,91 @@
+#include "dem/io/scene.h"
+
+#include "base/nearest.h"
+#include "base/scene_document.h"
+#include "base/scene_node.h"
+#include "dem/io/scene_parts.h"
+
+namespace densify::dem {
+namespace {
+
+void visit(Section root, Scene& scene, ScenePlaces& places) {
+  root.text("title", scene.title, Need::optional, "a line for results and reports");
+  root.quantity("reference_temperature", scene.reference_temperature, dim::temperature, Range::positive(),
+                Need::optional, "at which sizes and densities are given");
+  read_materials(root, scene, places);
+  read_interfaces(root, scene, places);
+  read_powder(root, scene, places);
+  read_specimen(root, scene, places);
+  read_walls(root, scene, places);
+  read_contact(root, scene, places);
+  read_process(root, scene, places);
+  read_loads(root, scene);
+  read_integration(root, scene);
+  read_output(root, scene);
+}
+
+Scene read(SceneDocument document) {
+  Scene scene;
+  ScenePlaces places;
+  visit(document.root(), scene, places);
+  document.reject_unknown();
+  check_scene(scene, places);
+  scene.effective_text = document.effective_text();
+  return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  const auto file = std::filesystem::is_directory(path) ? path / "scene.toml" : path;
+  Scene scene = read(SceneDocument::from_file(file, overrides));
+  scene.file = file;
+  return scene;
+}
+
+Scene read_scene_text(std::string_view text, const std::vector<std::string>& overrides) {
+  return read(SceneDocument::from_text(text, "scene.toml", overrides));
+}
+
+std::string scene_help() {
+  SceneDocument document = SceneDocument::for_help();
+  Scene scene;
+  ScenePlaces places;
+  visit(document.root(), scene, places);
+  return document.help_text();
+}
+
+std::uint8_t material_index(const Section& section, std::string_view key, const std::string& name, const Scene& scene) {
+  std::vector<std::string> names;
+  std::string all;
+  for (const Material& material : scene.materials) {
+    if (material.name == name) return std::uint8_t(names.size());
+    names.push_back(material.name);
+    all.append(all.empty() ? "" : ", ").append(toml_text(material.name));
+  }
+  section.fail(key, toml_text(name) + " is not among the materials " + all + did_you_mean(name, names));
+}
+
+void refuse_keys(const Section& section, std::initializer_list<std::string_view> keys, std::string_view reason) {
+  for (const std::string_view key : keys) {
+    if (section.has(key)) section.fail(key, reason);
+  }
+}
+
+std::string_view require_one(const Section& section, std::initializer_list<std::string_view> keys) {
+  std::string all;
+  std::string found;
+  std::string_view given = *keys.begin();
+  for (const std::string_view key : keys) {
+    all.append(all.empty() ? "" : ", ").append(key);
+    if (!section.has(key)) continue;
+    found.append(found.empty() ? "" : " and ").append(key);
+    given = key;
+  }
+  if (!section.documenting() && found != given) {
+    section.fail("", "needs exactly one of " + all + ", found " + (found.empty() ? "none" : found));
+  }
+  return given;
+}
+
+}  // namespace densify::dem

@@ -1,0 +1,72 @@
+// [process], [[load]], [integration], [output]: what happens, and how it is computed and written.
+
+#include <limits>
+
+#include "dem/io/scene_parts.h"
+
+namespace densify::dem {
+
+void read_process(Section& root, Scene& scene, ScenePlaces& places) {
+  root.section("process", Need::required, "temperature and pressure over time, linear through stages",
+               [&](Section& section) {
+                 places.process = section;
+                 scene.schedule = read_schedule(section);
+                 section.choice("stop_when", scene.stop_when,
+                                {{"schedule_ends", StopWhen::schedule_ends},
+                                 {"all_necks_at_equilibrium", StopWhen::all_necks_at_equilibrium}},
+                                Need::optional, "a run may end before its stages do");
+               });
+}
+
+void read_loads(Section& root, Scene& scene) {
+  root.list("load", Need::optional, "constant forces on single particles", [&](Section& section, std::size_t) {
+    Load load;
+    std::array<double, 3> force{unset, unset, unset};
+    section.integer("particle", load.particle, 0, std::numeric_limits<std::uint32_t>::max(), Need::required,
+                    "number of the particle in the order of the specimen, from 0");
+    section.vector3("force", force, dim::force, Need::required, "the force");
+    section.quantity("ramp", load.ramp, dim::time, Range::non_negative(), Need::optional,
+                     "the force grows linearly over this time from the start");
+    load.force = Vec3(force[0], force[1], force[2]);
+    scene.loads.push_back(load);
+  });
+}
+
+void read_integration(Section& root, Scene& scene) {
+  IntegrationSettings& s = scene.integration;
+  constexpr Range share{0.0, 1.0, Bound::exclusive, Bound::inclusive};
+  root.section("integration", Need::defaulted, "time steps of the leap-frog (4.8-4.13)", [&](Section& section) {
+    section.choice("rule", s.rule, {{"particle_sum", StepRule::particle_sum}, {"thesis", StepRule::thesis}},
+                   Need::optional, "limit from the sums over each particle's contacts, or pair by pair (4.71)-(4.75)");
+    section.quantity("step_safety", s.step_safety, dim::none, share, Need::optional,
+                     "beta, step over the limit (4.76)");
+    section.quantity("fixed_step", s.fixed_step, dim::time, Range::positive(), Need::optional,
+                     "one step for the whole run instead of the rule");
+    section.quantity("largest_step", s.largest_step, dim::time, Range::positive(), Need::optional,
+                     "the rule gives no longer step than this");
+    section.integer("limit_interval", s.limit_interval, 1, 1000000, Need::optional,
+                    "steps between two evaluations of the limit");
+    section.quantity("mass_scaling", s.mass_scaling, dim::none, Range::positive(), Need::optional,
+                     "alpha_m, mass that moves over real mass (4.80)");
+    section.quantity("skin", s.skin, dim::none, Range::positive(), Need::optional,
+                     "reach of the neighbour list beyond contact, over the mean radius");
+    std::array<double, 3> gravity{0.0, 0.0, 0.0};
+    section.vector3("gravity", gravity, dim::acceleration, Need::optional, "acceleration of all particles");
+    s.gravity = Vec3(gravity[0], gravity[1], gravity[2]);
+  });
+}
+
+void read_output(Section& root, Scene& scene) {
+  OutputSettings& s = scene.output;
+  root.section("output", Need::defaulted, "what is written, and how often", [&](Section& section) {
+    section.quantity("history_interval", s.history_interval, dim::time, Range::positive(), Need::optional,
+                     "process time between rows of history.csv; 1/400 of the process if absent");
+    section.quantity("snapshot_interval", s.snapshot_interval, dim::time, Range::positive(), Need::optional,
+                     "process time between snapshots; only at the ends of stages if absent");
+    section.quantity("checkpoint_interval", s.checkpoint_interval, dim::time, Range::positive(), Need::optional,
+                     "time on the clock between checkpoints");
+    section.flag("visualisation", s.visualisation, "files for ParaView with every snapshot");
+  });
+}
+
+}  // namespace densify::dem

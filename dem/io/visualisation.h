@@ -1,0 +1,38 @@
+#pragma once
+// Pictures for ParaView: .vtp files of particles (points) and contacts (lines) and the .pvd collections that give them
+// their times.  Written by hand in VTK's XML format, so that nothing has to be installed.
+
+#include <filesystem>
+
+#include "dem/io/snapshot.h"
+
+namespace densify::dem {
+
+/// Particles as points with radius, diameter, material, id, velocity, mean_stress, von_mises_stress and coordination.
+/// Throws FileError.
+void write_particles_vtp(const std::filesystem::path&, const Snapshot&);
+
+/// Contacts as lines from centre to centre with normal_force and, with necks, neck_radius and sintering_force.
+/// Throws FileError.
+void write_contacts_vtp(const std::filesystem::path&, const Snapshot&);
+
+/// The folder of all pictures of a run: particles.pvd, contacts.pvd and the files they list.
+class Visualisation {
+ public:
+  /// Starts pictures in a folder, which is made, or goes on after the first `pictures` of it.
+  /// Throws FileError, and InputError when the collection to go on with holds fewer.
+  Visualisation(std::filesystem::path folder, std::uint64_t pictures);
+
+  /// Throws FileError.
+  void add(const Snapshot&);
+
+  std::uint64_t pictures() const { return times_.size(); }
+
+ private:
+  void write_collection(const std::string& what) const;
+
+  std::filesystem::path folder_;
+  std::vector<std::string> times_;  // [s], as they stand in the collection
+};
+
+}  // namespace densify::dem

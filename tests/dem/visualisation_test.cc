@@ -1,0 +1,80 @@
+#include "dem/io/visualisation.h"
+
+#include "base/check.h"
+#include "tests/dem/scratch_folder.h"
+
+using namespace densify;
+using namespace densify::dem;
+using namespace densify::dem::testing;
+
+namespace {
+
+/// Two particles and a neck between them.
+Snapshot pair(double time) {
+  Snapshot s;
+  s.moment.time = time;
+  s.has_necks = true;
+  s.id = {0, 1};
+  s.material = {0, 1};
+  s.position = {Vec3(0, 0, 0), Vec3(2, 0, 0)};
+  s.radius = {1, 1};
+  s.velocity = {Vec3::Zero(), Vec3::Zero()};
+  s.stress = {Stress{3, 0, 0, 0, 0, 0}, Stress{}};
+  s.coordination = {1, 1};
+  s.first_id = {0};
+  s.second_id = {1};
+  s.start = {Vec3::Zero()};
+  s.branch = {Vec3(2, 0, 0)};
+  s.normal_force = {-1};
+  s.sintering_force = {0.5};
+  s.neck_radius = {0.25};
+  return s;
+}
+
+}  // namespace
+
+// Base64 by hand: material holds 0, 1 after its length 2 as eight bytes, 02 00 .. 00 | 00 01, so "AgAAAAAAAAAAAQ==";
+// the neck radius 0.25f is 00 00 80 3e after 04 00 .. 00.  (All arrays are decoded in results_test.py.)
+TEST(Visualisation, ArraysAreLengthAndContentInBase64) {
+  const ScratchFolder folder;
+  write_particles_vtp(folder / "p.vtp", pair(0));
+  const std::string particles = content_of(folder / "p.vtp");
+  EXPECT_NE(particles.find("NumberOfPoints=\"2\" NumberOfVerts=\"2\""), std::string::npos);
+  EXPECT_NE(particles.find("Name=\"material\" NumberOfComponents=\"1\" format=\"binary\">AgAAAAAAAAAAAQ==<"),
+            std::string::npos);
+  write_contacts_vtp(folder / "c.vtp", pair(0));
+  const std::string contacts = content_of(folder / "c.vtp");
+  EXPECT_NE(contacts.find("NumberOfPoints=\"2\" NumberOfVerts=\"0\" NumberOfLines=\"1\""), std::string::npos);
+  EXPECT_NE(contacts.find("Name=\"neck_radius\" NumberOfComponents=\"1\" format=\"binary\">BAAAAAAAAAAAAIA+<"),
+            std::string::npos);
+}
+
+// Without necks there is no array for them.
+TEST(Visualisation, OnlyFeaturesInUse) {
+  const ScratchFolder folder;
+  Snapshot s = pair(0);
+  s.has_necks = false;
+  write_contacts_vtp(folder / "c.vtp", s);
+  EXPECT_EQ(content_of(folder / "c.vtp").find("neck_radius"), std::string::npos);
+}
+
+// The pictures of a run that was killed after its second and resumed after its first are those of a run in one go.
+TEST(Visualisation, ResumesItsCollections) {
+  const ScratchFolder folder;
+  Visualisation whole(folder / "whole", 0);
+  for (double time : {0.0, 0.1, 1e-7}) whole.add(pair(time));
+  {
+    Visualisation killed(folder / "cut", 0);
+    for (double time : {0.0, 5.0}) killed.add(pair(time));
+  }
+  Visualisation resumed(folder / "cut", 1);
+  EXPECT_EQ(resumed.pictures(), 1u);
+  for (double time : {0.1, 1e-7}) resumed.add(pair(time));
+  for (const char* name : {"particles.pvd", "contacts.pvd", "particles_000002.vtp"})
+    EXPECT_EQ(content_of(folder / ("cut/" + std::string(name))), content_of(folder / ("whole/" + std::string(name))))
+        << name;
+  EXPECT_NE(content_of(folder / "cut/contacts.pvd").find("timestep=\"0.1\" part=\"0\" file=\"contacts_000001.vtp\""),
+            std::string::npos);
+  EXPECT_NE(message_of<InputError>([&] { Visualisation(folder / "cut", 4); }).find("fewer pictures"),
+            std::string::npos);
+}
