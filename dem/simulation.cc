@@ -29,7 +29,8 @@ std::vector<Wall> make_walls(const Container& c) {
       plane("bottom", Vec3::Zero(), Vec3::UnitZ());
       plane("punch", Vec3(0, 0, c.size[2]), -Vec3::UnitZ());
       break;
-    default: break;
+    default:
+      break;
   }
   return walls;
 }
@@ -69,7 +70,9 @@ void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
   values = std::move(sorted);
 }
 
-double sphere_volume(double r) { return 4.0 / 3 * M_PI * r * r * r; }
+double sphere_volume(double r) {
+  return 4.0 / 3 * M_PI * r * r * r;
+}
 
 }  // namespace
 
@@ -77,7 +80,8 @@ Simulation::Simulation(Setup setup)
     : setup_(std::move(setup)),
       table_(setup_.materials, setup_.interfaces, setup_.contact),
       pass_(setup_.contact, setup_.integration.threads) {
-  if (setup_.particles.size() == 0) throw InputError("powder: no particles (the powder is empty); give a number of at least 1");
+  if (setup_.particles.size() == 0)
+    throw InputError("powder: no particles (the powder is empty); give a number of at least 1");
   Particles& particles = setup_.particles;
   const auto order = spatial_order(particles);
   permute(particles.body, order);
@@ -125,8 +129,8 @@ Simulation::Simulation(Setup setup)
   for (const auto& w : state_.walls.wall)
     for (std::size_t p = 0; p < n; ++p)
       if (Walls::gap(w, state_.particles.body[p].position, unused) < 0)
-        throw InputError("specimen: particle " + std::to_string(state_.particles.id[p]) + " lies outside the container (" +
-                         w.name + "); move it inside or enlarge the container");
+        throw InputError("specimen: particle " + std::to_string(state_.particles.id[p]) +
+                         " lies outside the container (" + w.name + "); move it inside or enlarge the container");
   set_environment();
   rebuild_lists();
 }
@@ -167,13 +171,16 @@ void Simulation::set_environment() {
   }
   if (grows)
     for (std::size_t p = 0; p < state_.particles.size(); ++p)
-      state_.particles.body[p].radius = state_.particles.reference_radius[p] * state_.expansion[state_.particles.material[p]];
+      state_.particles.body[p].radius =
+          state_.particles.reference_radius[p] * state_.expansion[state_.particles.material[p]];
   const double a = setup_.container.wall_expansion;
   if (a != 0) {
     const double stretch = (1 + a * dt) / (1 + a * old_dt);
     for (auto& w : state_.walls.wall) {
-      if (w.shape == WallShape::cylinder) w.radius *= stretch;
-      else if (std::abs(w.normal[2]) < 0.5) w.point *= stretch;  // lateral planes of a box
+      if (w.shape == WallShape::cylinder)
+        w.radius *= stretch;
+      else if (std::abs(w.normal[2]) < 0.5)
+        w.point *= stretch;  // lateral planes of a box
     }
   }
   state_.temperature = t;
@@ -185,19 +192,39 @@ void Simulation::rebuild_lists() {
   rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs);
   state_.walls.rebuild(state_.particles, state_.contacts.skin);
   pass_.list_changed(state_.contacts, state_.particles.size());
+  prune_near(0);
+}
+
+void Simulation::require_finite_positions() const {
+  for (std::size_t p = 0; p < state_.particles.size(); ++p)
+    if (!state_.particles.body[p].position.allFinite())
+      throw RunError("the position of particle " + std::to_string(state_.particles.id[p]) +
+                     " is no longer finite at process time " + std::to_string(state_.time) +
+                     " s; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
 }
 
 void Simulation::keep_list_fresh() {
-  const double age = list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, setup_.integration.threads);
-  if (std::isnan(age)) {
-    for (std::size_t p = 0; p < state_.particles.size(); ++p)
-      if (!state_.particles.body[p].position.allFinite())
-        throw RunError("the position of particle " + std::to_string(state_.particles.id[p]) +
-                       " is no longer finite at process time " + std::to_string(state_.time) +
-                       " s; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
-  }
+  const int threads = setup_.integration.threads;
+  const double travel = pass_.near().travel(state_.particles, state_.cell, state_.expansion, threads);
+  if (std::isnan(travel)) require_finite_positions();
   const bool first_necks = setup_.contact.sintering && state_.contacts.neck.empty() && table_.any_active();
-  if (age >= 1 || first_necks || state_.walls.age(state_.contacts.skin) >= 1) rebuild_lists();
+  bool rebuilding = first_necks || state_.walls.age(state_.contacts.skin) >= 1;
+  const bool prune = travel >= pass_.near().skin();
+  // The list is rebuilt exactly when its own age says so, whatever was pruned since; travel only spares looking.
+  if (!rebuilding && (prune || travel >= list_slack_)) {
+    const double age = list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, threads);
+    if (std::isnan(age)) require_finite_positions();
+    rebuilding = age >= 1;
+    if (!rebuilding && prune) prune_near(age);
+  }
+  if (rebuilding) rebuild_lists();
+}
+
+void Simulation::prune_near(double list_age) {
+  pass_.near().prune(state_.contacts, state_.particles, state_.cell, state_.expansion);
+  pass_.near_changed(state_.particles.size());
+  constexpr double rounding = 1e-9;  // of the sum of two distances
+  list_slack_ = (1 - list_age - rounding) * state_.contacts.skin;
 }
 
 void Simulation::compute_forces(Recording* record) {
@@ -207,7 +234,8 @@ void Simulation::compute_forces(Recording* record) {
   if (!state_.walls.wall.empty())
     state_.walls.compute(state_.particles, table_, setup_.contact, expansion_step_, clock,
                          record ? &record->wall : nullptr);
-  else if (record) record->wall.clear();
+  else if (record)
+    record->wall.clear();
   for (const auto& load : setup_.loads) {
     const double share = load.ramp > 0 ? std::min(1.0, state_.time / load.ramp) : 1.0;
     state_.particles.force[load.particle] += share * load.force;
@@ -243,8 +271,8 @@ double Simulation::choose_step() {
     if (!std::isnan(settings.fixed_step)) {
       if (settings.fixed_step > limit.critical)
         throw RunError("integration.fixed_step of " + std::to_string(settings.fixed_step) +
-                       " s has come above the stability limit of " + std::to_string(limit.critical) +
-                       " s (particle " + std::to_string(state_.particles.id[limit.particle]) + ", process time " +
+                       " s has come above the stability limit of " + std::to_string(limit.critical) + " s (particle " +
+                       std::to_string(state_.particles.id[limit.particle]) + ", process time " +
                        std::to_string(state_.time) + " s); use a smaller one, or leave it out");
       state_.stable_step = settings.fixed_step;
     }

@@ -15,30 +15,30 @@ enum class ContainerShape : std::uint8_t { free, cylinder, box, periodic };
 /// What holds the powder.
 struct Container {
   ContainerShape shape = ContainerShape::free;
-  Vec3 size = Vec3::Zero();       ///< cylinder: (diameter, diameter, height); box: edges [m]
-  bool punch = true;              ///< cylinder and box: a load-controlled punch on top
-  double wall_expansion = 0;      ///< linear thermal expansion of the lateral walls [1/K]
+  Vec3 size = Vec3::Zero();   ///< cylinder: (diameter, diameter, height); box: edges [m]
+  bool punch = true;          ///< cylinder and box: a load-controlled punch on top
+  double wall_expansion = 0;  ///< linear thermal expansion of the lateral walls [1/K]
   WallMaterial material;
   PunchSettings punch_settings;
 };
 
 /// A force on one particle, reached linearly over `ramp`.
 struct Load {
-  std::uint32_t particle = 0;     ///< number as listed in the specimen, from 0
-  Vec3 force = Vec3::Zero();      ///< [N]
-  double ramp = 0;                ///< [s]
+  std::uint32_t particle = 0;  ///< number as listed in the specimen, from 0
+  Vec3 force = Vec3::Zero();   ///< [N]
+  double ramp = 0;             ///< [s]
 };
 
 struct IntegrationSettings {
   StepRule rule = StepRule::particle_sum;
   double step_safety = 0.8;
-  double fixed_step = unset;      ///< replaces the rule [s]
-  double largest_step = unset;    ///< [s]
-  int limit_interval = 20;        ///< steps between two evaluations of the limit
-  double mass_scaling = 1;        ///< alpha_m (4.80)
-  double skin = 0.2;              ///< reach of the neighbour list over the mean radius
-  double drag = 0;                ///< mass-proportional damping rate [1/s], for packing
-  Vec3 gravity = Vec3::Zero();    ///< [m/s^2]
+  double fixed_step = unset;    ///< replaces the rule [s]
+  double largest_step = unset;  ///< [s]
+  int limit_interval = 20;      ///< steps between two evaluations of the limit
+  double mass_scaling = 1;      ///< alpha_m (4.80)
+  double skin = 0.2;            ///< reach of the neighbour list over the mean radius
+  double drag = 0;              ///< mass-proportional damping rate [1/s], for packing
+  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
   int threads = 1;
 };
 
@@ -63,12 +63,12 @@ struct State {
   ContactList contacts;
   Walls walls;
   Punch punch;
-  std::vector<double> expansion;     ///< r(T)/r_ref of each material
-  double temperature = unset;        ///< at which radii and rows are evaluated [K]
-  double time = 0;                   ///< process time t^n [s]
-  double last_step = 0;              ///< t^n - t^{n-1} [s]
-  double stable_step = 0;            ///< safety x critical of the last evaluation [s]
-  double critical_step = 0;          ///< [s]
+  std::vector<double> expansion;  ///< r(T)/r_ref of each material
+  double temperature = unset;     ///< at which radii and rows are evaluated [K]
+  double time = 0;                ///< process time t^n [s]
+  double last_step = 0;           ///< t^n - t^{n-1} [s]
+  double stable_step = 0;         ///< safety x critical of the last evaluation [s]
+  double critical_step = 0;       ///< [s]
   std::uint64_t steps = 0;
   std::vector<double> active_since;  ///< of each pair of materials [s]
 };
@@ -85,8 +85,8 @@ class Simulation {
   explicit Simulation(Setup setup);
 
   /// First half of a step: environment, lists and forces at the present time.  With `record` given it also fills it;
-  /// the trajectory is the same with and without.  Once a step, since histories advance.  Throws RunError when the state
-  /// is no longer sound.
+  /// the trajectory is the same with and without.  Once a step, since histories advance.  Throws RunError when the
+  /// state is no longer sound.
   void evaluate(Recording* record);
   /// Second half of a step: chooses its length and moves particles, punch and cell.
   void move();
@@ -114,13 +114,13 @@ class Simulation {
 
   double temperature() const { return setup_.schedule.temperature(state_.time); }
   double pressure() const { return setup_.schedule.pressure(state_.time); }
-  double real_mass(std::size_t p) const;   ///< [kg]
+  double real_mass(std::size_t p) const;  ///< [kg]
   /// Solid volume of the powder at the reference temperature [m^3].
   double solid_volume() const;
   /// Index of a wall by name; no value when the container has none of that name.
   std::optional<std::size_t> wall(std::string_view name) const;
-  std::size_t bytes() const;               ///< memory of state and scratch
-  std::size_t contacts_now() const;        ///< touching or necked pairs
+  std::size_t bytes() const;         ///< memory of state and scratch
+  std::size_t contacts_now() const;  ///< touching or necked pairs
 
  private:
   void set_environment();
@@ -128,11 +128,14 @@ class Simulation {
   void compute_forces(Recording* record);
   double choose_step();
   void rebuild_lists();
+  void prune_near(double list_age);
+  void require_finite_positions() const;
 
   Setup setup_;
   PairTable table_;
   ForcePass pass_;
   State state_;
+  double list_slack_ = 0;  // what may be travelled since the last pruning before the list can be too old [m]
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
 };

@@ -26,8 +26,9 @@ void Walls::rebuild(const Particles& particles, double skin) {
     for (std::size_t p = 0; p < particles.size(); ++p) {
       const double g = gap(wall[w], particles.body[p].position, n);
       if (g < 0)
-        throw RunError("particle " + std::to_string(particles.id[p]) + " has left the " + wall[w].name +
-                       ": its centre is beyond the wall; the step or the mass factor is too large, or the wall too soft");
+        throw RunError(
+            "particle " + std::to_string(particles.id[p]) + " has left the " + wall[w].name +
+            ": its centre is beyond the wall; the step or the mass factor is too large, or the wall too soft");
       if (g < particles.body[p].radius + skin) fresh.push_back({std::uint32_t(p), std::uint8_t(w), Vec3::Zero()});
     }
   auto less = [](const WallContact& a, const WallContact& b) {
@@ -64,7 +65,8 @@ template <class Visit>
 void with_wall_law(const ContactModel& model, double modulus, Visit&& visit) {
   if (model.elasticity == Elasticity::linear)
     visit(KelvinVoigt<LinearSpring>{{model.normal_stiffness}, model.damping_ratio});
-  else visit(KelvinVoigt<HertzSpring>{{modulus, 0.0}, model.damping_ratio});
+  else
+    visit(KelvinVoigt<HertzSpring>{{modulus, 0.0}, model.damping_ratio});
 }
 
 NormalInput wall_input(const Body& b, double gap, double rate, PassTime clock) {
@@ -109,8 +111,12 @@ void Walls::compute(Particles& particles, const PairTable& table, const ContactM
       if (model.friction) {
         const double lever = g;
         const Vec3 spin = lever * particles.angular_velocity[c.particle];
-        const TangentialInput t{n,  v - vn * n - spin.cross(n), std::max(0.0, -fn), law.spring.tangent(in.overlap, in.elastic_radius),
-                                in.reduced_mass, clock.step};
+        const TangentialInput t{n,
+                                v - vn * n - spin.cross(n),
+                                std::max(0.0, -fn),
+                                law.spring.tangent(in.overlap, in.elastic_radius),
+                                in.reduced_mass,
+                                clock.step};
         const Vec3 ft = coulomb(*model.friction, model.friction->wall_coefficient, t, c.tangential);
         f += ft;
         particles.torque[c.particle] += lever * n.cross(ft);

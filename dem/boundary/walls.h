@@ -22,7 +22,7 @@ struct Wall {
 
 /// What walls are made of.
 struct WallMaterial {
-  double youngs_modulus = unset;   ///< [Pa]; unset: rigid against the particle's own modulus
+  double youngs_modulus = unset;  ///< [Pa]; unset: rigid against the particle's own modulus
   double poissons_ratio = unset;
 };
 
@@ -37,8 +37,8 @@ struct WallContact {
 struct WallRecord {
   std::uint32_t particle;
   std::uint8_t wall;
-  Vec3 force;    ///< on the particle [N]
-  Vec3 branch;   ///< from the particle's centre to the contact point [m]
+  Vec3 force;             ///< on the particle [N]
+  Vec3 branch;            ///< from the particle's centre to the contact point [m]
   double elastic_energy;  ///< [J]
 };
 

@@ -41,8 +41,11 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
       for (std::size_t k = bucket.begin; k < bucket.end; ++k) {
         const NormalInput in = normal_input(model, particles, list, cell, no_growth, clock, k);
         Linearisation l;
-        if (list.neck.empty()) l = loose.linearise(in);
-        else l = make_sintering<Spring>(model, table.row(bucket.material_a, bucket.material_b)).linearise(in, list.neck[k]);
+        if (list.neck.empty())
+          l = loose.linearise(in);
+        else
+          l = make_sintering<Spring>(model, table.row(bucket.material_a, bucket.material_b))
+                  .linearise(in, list.neck[k]);
         if (rule == StepRule::thesis) smallest_pair = std::min(smallest_pair, thesis_limit(l, in.reduced_mass));
         const double factor = std::max(1.0, tangential);
         const bool dashpot = std::isinf(l.stiffness);  // a viscous contact without spring

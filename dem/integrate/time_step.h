@@ -7,7 +7,7 @@ namespace densify::dem {
 
 enum class StepRule : std::uint8_t {
   particle_sum,  ///< every particle's (and the punch's) row sum of stiffness and damping: safe in any packing
-  thesis         ///< the smallest of the pairs' limits (4.71)-(4.75) as printed, to be used with its small safety factor
+  thesis  ///< the smallest of the pairs' limits (4.71)-(4.75) as printed, to be used with its small safety factor
 };
 
 /// Largest step for which dt^2 k/(2 m) + dt c/m <= 1: a node of mass m whose contacts have stiffness sum k and damping
@@ -28,8 +28,8 @@ struct StepLimit {
 
 /// The punch as a node of the limit; mass 0 = no moving punch.
 struct PunchNode {
-  double mass = 0;          ///< [kg]
-  double own_damping = 0;   ///< [N s/m]
+  double mass = 0;         ///< [kg]
+  double own_damping = 0;  ///< [N s/m]
   std::size_t wall = 0;
 };
 
