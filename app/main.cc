@@ -20,8 +20,8 @@ int run_main(int argc, char** argv) {
   CLI::App app{"Densify: how a powder becomes a solid part under heat and pressure."};
   app.name("densify");
   app.footer(exit_codes);
-  app.set_version_flag("--version", "densify " + std::string(densify::version()) + " (" +
-                                        std::string(densify::git_revision()) + ")");
+  app.set_version_flag(
+      "--version", "densify " + std::string(densify::version()) + " (" + std::string(densify::git_revision()) + ")");
   app.require_subcommand(1);
 
   densify::app::RunCommand run;

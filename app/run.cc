@@ -18,7 +18,9 @@ namespace fs = std::filesystem;
 
 std::atomic<bool> stop_requested{false};
 
-extern "C" void request_stop(int) { stop_requested = true; }
+extern "C" void request_stop(int) {
+  stop_requested = true;
+}
 
 std::string duration(double seconds) {
   if (!(seconds >= 0)) return "-";
@@ -42,10 +44,11 @@ class ProgressLine {
     }
     std::string line =
         packing ? fmt::format("packing {:3.0f} %  left {}", 100 * p.share, duration(p.seconds_left))
-                : fmt::format("{:3.0f} %  {:<16.16s} t {:>8.4g} s  T {:6.1f} K  p {:6.2f} MPa  density {:.4f}  {:>9.3g} "
-                              "steps/s  left {}",
-                              100 * p.share, p.stage, p.time, p.temperature, p.pressure * 1e-6, p.relative_density,
-                              p.steps_per_second, duration(p.seconds_left));
+                : fmt::format(
+                      "{:3.0f} %  {:<16.16s} t {:>8.4g} s  T {:6.1f} K  p {:6.2f} MPa  density {:.4f}  {:>9.3g} "
+                      "steps/s  left {}",
+                      100 * p.share, p.stage, p.time, p.temperature, p.pressure * 1e-6, p.relative_density,
+                      p.steps_per_second, duration(p.seconds_left));
     if (terminal_) {
       fmt::print(stderr, "\r{:<118s}", line);
       std::fflush(stderr);
@@ -96,11 +99,13 @@ int run_command(const RunCommand& command) {
   if (folder.empty()) {
     const fs::path given = fs::path(command.scene).lexically_normal();
     const fs::path file = scene.file.lexically_normal();
-    std::string name = fs::is_directory(given) ? (given.has_filename() ? given : given.parent_path()).filename().string()
-                                               : file.stem().string();
+    std::string name = fs::is_directory(given)
+                           ? (given.has_filename() ? given : given.parent_path()).filename().string()
+                           : file.stem().string();
     if (!fs::is_directory(given) && name != "scene" && file.has_parent_path())
       name = file.parent_path().filename().string() + "_" + name;
-    else if (name == "scene") name = fs::absolute(file).parent_path().filename().string();
+    else if (name == "scene")
+      name = fs::absolute(file).parent_path().filename().string();
     folder = fs::path("results") / name;
   }
 

@@ -8,11 +8,11 @@ namespace densify::dem {
 
 /// What rows need to remember from row to row; travels with the checkpoint.
 struct HistoryMemory {
-  Envelope initial;              ///< shrinkage counts from here (5.4)
-  double density = unset;        ///< of the row before
-  double time = 0;               ///< of the row before [s]
-  double punch_impulse = 0;      ///< integral of the punch force since the row before [N s]
-  double punch_time = 0;         ///< [s]
+  Envelope initial;          ///< shrinkage counts from here (5.4)
+  double density = unset;    ///< of the row before
+  double time = 0;           ///< of the row before [s]
+  double punch_impulse = 0;  ///< integral of the punch force since the row before [N s]
+  double punch_time = 0;     ///< [s]
 
   std::vector<double> numbers() const;
   static HistoryMemory from(std::span<const double> numbers);

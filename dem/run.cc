@@ -21,9 +21,7 @@ namespace fs = std::filesystem;
 
 class Stopwatch {
  public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -75,7 +73,8 @@ std::string derived_text(const Scene& scene, const Simulation& sim, const Specim
   const Vec3& size = sim.setup().container.size;
   out << "# container = " << size[0] << " x " << size[1] << " x " << size[2] << " m\n";
   if (sim.state().punch.mass > 0)
-    out << "# punch: fictitious mass = " << sim.state().punch.mass << " kg, area = " << sim.state().punch.area << " m^2\n";
+    out << "# punch: fictitious mass = " << sim.state().punch.mass << " kg, area = " << sim.state().punch.area
+        << " m^2\n";
   out << "# neighbour list skin = " << sim.state().contacts.skin << " m\n";
   for (std::size_t a = 0; a < scene.materials.size(); ++a)
     for (std::size_t b = a; b < scene.materials.size() && scene.contact.sintering; ++b) {
@@ -213,9 +212,9 @@ void Run::record(const Recording& recording, bool breakpoint) {
   summary_.last = m;
 
   if (breakpoint || state.time >= next_snapshot_) {
-    const Snapshot snapshot = take_snapshot(
-        *sim_, recording,
-        {state.time, sim_->temperature(), sim_->pressure(), m.relative_density, stage_name(state.time)});
+    const Snapshot snapshot =
+        take_snapshot(*sim_, recording,
+                      {state.time, sim_->temperature(), sim_->pressure(), m.relative_density, stage_name(state.time)});
     results_->add_snapshot(snapshot);
     if (pictures_) pictures_->add(snapshot);
     position_.snapshots = results_->snapshots();
@@ -254,14 +253,14 @@ void Run::loop() {
   const std::uint64_t first = sim_->state().steps;
   while (true) {
     const State& state = sim_->state();
-    const bool last = sim_->finished() || (scene_.stop_when == StopWhen::all_necks_at_equilibrium &&
-                                           sim_->all_at_equilibrium());
+    const bool last =
+        sim_->finished() || (scene_.stop_when == StopWhen::all_necks_at_equilibrium && sim_->all_at_equilibrium());
     const bool look = (state.steps - first) % watched == 0;
     if (look) {
       if (options_.stop && *options_.stop) {
         write_checkpoint_now();
-        throw Interrupted("interrupted at process time " + text("%.6g s", state.time) + "; continue with --resume --out " +
-                          options_.folder.string());
+        throw Interrupted("interrupted at process time " + text("%.6g s", state.time) +
+                          "; continue with --resume --out " + options_.folder.string());
       }
       if (clock_.seconds() - last_checkpoint_ > scene_.output.checkpoint_interval) write_checkpoint_now();
       if (clock_.seconds() - last_progress_ > 0.25) report_progress();
@@ -298,7 +297,7 @@ RunSummary Run::whole() {
                    "; the history so far is " + paths_.history.string());
   }
   const Stopwatch watch;
-  results_->consolidate();
+  results_->consolidate(ResultFile::usual_largest);
   output_seconds_ += watch.seconds();
   report_progress();
 
@@ -321,7 +320,9 @@ RunSummary Run::whole() {
 
 }  // namespace
 
-RunSummary run(const Scene& scene, const RunOptions& options) { return Run(scene, options).whole(); }
+RunSummary run(const Scene& scene, const RunOptions& options) {
+  return Run(scene, options).whole();
+}
 
 std::string fingerprint(const Scene& scene) {
   // FNV-1a over the lines that matter: output settings and title may change between a run and its resumption.

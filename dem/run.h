@@ -21,17 +21,17 @@ struct Progress {
   double pressure = 0;          ///< [Pa]
   double relative_density = 0;  ///< of the last measure
   double steps_per_second = 0;
-  double seconds_left = 0;      ///< wall time, by the rate of process time so far
+  double seconds_left = 0;  ///< wall time, by the rate of process time so far
 };
 
 struct RunOptions {
-  std::filesystem::path folder;               ///< results; made when absent
+  std::filesystem::path folder;  ///< results; made when absent
   Continue mode = Continue::fresh;
   int threads = 1;
-  std::string version;                        ///< written into the results
-  std::function<void(const Progress&)> progress;          ///< called about four times a second; may be empty
-  std::function<void(const std::string&)> say;            ///< one line of the log; may be empty
-  const std::atomic<bool>* stop = nullptr;    ///< set by a signal: end with a checkpoint
+  std::string version;                            ///< written into the results
+  std::function<void(const Progress&)> progress;  ///< called about four times a second; may be empty
+  std::function<void(const std::string&)> say;    ///< one line of the log; may be empty
+  const std::atomic<bool>* stop = nullptr;        ///< set by a signal: end with a checkpoint
 };
 
 /// Where the time of a run went, and what it came to.
@@ -44,9 +44,9 @@ struct RunSummary {
   double wall_seconds = 0;
   std::uint64_t steps = 0;
   std::size_t list_builds = 0;
-  std::size_t bytes = 0;        ///< of state and scratch
+  std::size_t bytes = 0;  ///< of state and scratch
   Measures last;
-  double end_time = 0;          ///< process time [s]
+  double end_time = 0;  ///< process time [s]
   std::vector<std::string> warnings;
 };
 

@@ -90,8 +90,8 @@ class Simulation {
   void evaluate(Recording* record);
   /// Second half of a step: chooses its length and moves particles, punch and cell.
   void move();
-  void advance() {
-    evaluate(nullptr);
+  void advance(Recording* record = nullptr) {
+    evaluate(record);
     move();
   }
 
@@ -135,7 +135,8 @@ class Simulation {
   PairTable table_;
   ForcePass pass_;
   State state_;
-  double list_slack_ = 0;  // what may be travelled since the last pruning before the list can be too old [m]
+  bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
+  double list_slack_ = 0;        // what may be travelled since the last pruning before the list can be too old [m]
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
 };

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/nearest.h"
+#include "dem/io/atomic_file.h"
 #include "dem/io/hdf5_file.h"
 #include "dem/io/particle_import.h"
 
@@ -85,7 +86,8 @@ void reject_outside(const GreenBody& body, double largest_overlap) {
     const Vec3& x = body.particles.body[k].position;
     const double r = body.particles.reference_radius[k];
     double beyond = std::max(r - x[2], x[2] + r - size[2]);
-    if (shape == ContainerShape::cylinder) beyond = std::max(beyond, std::hypot(x[0], x[1]) + r - 0.5 * size[0]);
+    if (shape == ContainerShape::cylinder)
+      beyond = std::max(beyond, std::hypot(x[0], x[1]) + r - 0.5 * size[0]);
     else
       for (int axis : {0, 1}) beyond = std::max({beyond, r - x[axis], x[axis] + r - size[axis]});
     if (beyond > largest_overlap * r)
@@ -136,15 +138,14 @@ Specimen make_specimen(const Scene& scene, int threads, const PackingProgress& p
   const SizeStatistics& s = specimen.sizes;
   specimen.lines.push_back(std::to_string(s.count) + " particles, solid volume " +
                            formatted("%.4g um^3 (%.4g m^3)", s.solid_volume * 1e18, s.solid_volume));
-  specimen.lines.push_back(formatted("diameter mean %.3f um, standard deviation %.3f um", s.mean * 1e6,
-                                     s.standard_deviation * 1e6) +
-                           formatted(", %.2f to %.2f um", s.minimum * 1e6, s.maximum * 1e6));
+  specimen.lines.push_back(
+      formatted("diameter mean %.3f um, standard deviation %.3f um", s.mean * 1e6, s.standard_deviation * 1e6) +
+      formatted(", %.2f to %.2f um", s.minimum * 1e6, s.maximum * 1e6));
   if (!scene.import)
-    specimen.lines.push_back(
-        formatted("green density %.4f, coordination number %.2f", specimen.body.relative_density,
-                  specimen.body.coordination_number) +
-        formatted(", mean overlap %.3f %% of the mean radius (%.0f packing steps)", 100 * specimen.body.mean_overlap,
-                  double(specimen.body.steps)));
+    specimen.lines.push_back(formatted("green density %.4f, coordination number %.2f", specimen.body.relative_density,
+                                       specimen.body.coordination_number) +
+                             formatted(", mean overlap %.3f %% of the mean radius (%.0f packing steps)",
+                                       100 * specimen.body.mean_overlap, double(specimen.body.steps)));
   return specimen;
 }
 
@@ -159,7 +160,7 @@ Setup make_setup(const Scene& scene, const GreenBody& body, int threads) {
 }
 
 void write_specimen(const std::filesystem::path& path, const GreenBody& body) {
-  Hdf5Writer file(path, Hdf5Storage::memory);
+  Hdf5Writer file(path);
   std::vector<Vec3> position;
   for (const auto& b : body.particles.body) position.push_back(b.position);
   file.table("position", position, "m");
@@ -170,10 +171,11 @@ void write_specimen(const std::filesystem::path& path, const GreenBody& body) {
   file.list("container_size", std::vector<double>(s.data(), s.data() + 3), "m");
   file.list("cell_edges_by_column", std::vector<double>(body.cell.h.data(), body.cell.h.data() + 9), "m");
   file.list("cell_origin", std::vector<double>(body.cell.origin.data(), body.cell.origin.data() + 3), "m");
-  file.list("summary", std::vector<double>{double(body.cell.periodic), body.relative_density, body.coordination_number,
-                                           body.mean_overlap, double(body.steps)},
+  file.list("summary",
+            std::vector<double>{double(body.cell.periodic), body.relative_density, body.coordination_number,
+                                body.mean_overlap, double(body.steps)},
             "");
-  file.commit();
+  file.commit(Durability::power_loss);
 }
 
 GreenBody read_specimen(const std::filesystem::path& path) {

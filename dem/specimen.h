@@ -9,8 +9,8 @@ namespace densify::dem {
 /// The specimen at the start of the process, with what is worth reporting of its making.
 struct Specimen {
   GreenBody body;
-  SizeStatistics sizes;                     ///< of all diameters, bins of a twentieth of the range
-  std::vector<std::string> lines;           ///< the same in words, for the log
+  SizeStatistics sizes;            ///< of all diameters, bins of a twentieth of the range
+  std::vector<std::string> lines;  ///< the same in words, for the log
 };
 
 /// Draws and packs, or imports, what the scene asks for.  Throws InputError: empty powder, unreachable density,

@@ -7,20 +7,20 @@
 namespace densify::dem {
 
 struct PunchSettings {
-  double mass_fraction = 0.2;   ///< fictitious mass over the scaled mass of the powder
-  double damping_ratio = 0.3;   ///< of the critical damping against its contacts' stiffness
+  double mass_fraction = 0.2;  ///< fictitious mass over the scaled mass of the powder
+  double damping_ratio = 0.3;  ///< of the critical damping against its contacts' stiffness
 };
 
 /// m dv/dt = F_powder - p A - c (v - v_mean).  The damper acts against a running mean of the velocity over some ten
 /// periods that follows a steady acceleration without lag (a critically damped second-order filter), so that it stills
 /// vibration and takes no share of the load while the powder densifies.
 struct Punch {
-  double mass = 0;           ///< 0 = no moving punch [kg]
-  double area = 0;           ///< A [m^2]
-  double damping = 0;        ///< c [N s/m]
-  double memory = 0;         ///< time constant of the running mean [s]
-  double velocity = 0;       ///< outward positive [m/s]
-  double mean_velocity = 0;  ///< [m/s]
+  double mass = 0;               ///< 0 = no moving punch [kg]
+  double area = 0;               ///< A [m^2]
+  double damping = 0;            ///< c [N s/m]
+  double memory = 0;             ///< time constant of the running mean [s]
+  double velocity = 0;           ///< outward positive [m/s]
+  double mean_velocity = 0;      ///< [m/s]
   double mean_acceleration = 0;  ///< [m/s^2]
 
   /// New stiffness sum of the contacts [N/m]; without any contact the last damper stays.
@@ -35,7 +35,8 @@ struct Punch {
   void kick(double powder_force, double pressure, double step) {
     velocity += (powder_force - pressure * area - damping * (velocity - mean_velocity)) / mass * step;
     if (memory <= 0) return;
-    // Implicit in the filter, so that it is stable for any step: e = v - v_mean, v_mean' = a_mean + 2 e/T, a_mean' = e/T^2.
+    // Implicit in the filter, so that it is stable for any step: e = v - v_mean, v_mean' = a_mean + 2 e/T, a_mean' =
+    // e/T^2.
     const double x = step / memory;
     const double e = (velocity - mean_velocity - step * mean_acceleration) / (1 + 2 * x + x * x);
     mean_acceleration += x * e / memory;

@@ -1,7 +1,6 @@
 #include "dem/contact/force_pass.h"
 
 #include <Eigen/Geometry>
-#include <type_traits>
 
 #include "dem/law/friction.h"
 #include "dem/parallel.h"
@@ -39,10 +38,6 @@ struct RecordSink {
     record[pair.place] = c;
   }
 };
-
-template <class Law>
-inline constexpr bool has_necks =
-    !std::is_same_v<Law, KelvinVoigt<LinearSpring>> && !std::is_same_v<Law, KelvinVoigt<HertzSpring>>;
 
 template <class Law>
 const auto& spring_of(const Law& law) {

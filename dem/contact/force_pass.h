@@ -1,6 +1,8 @@
 #pragma once
 // The contact pass: every contact's law, then the sum over each particle's contacts in one fixed order.
 
+#include <type_traits>
+
 #include "dem/contact/near_list.h"
 #include "dem/material/pair_table.h"
 
@@ -90,6 +92,11 @@ SinteringContact<Spring> make_sintering(const ContactModel& m, const PairPropert
   const KelvinVoigt<Spring> loose{make_spring<Spring>(m, p), m.damping_ratio};
   return {loose, *m.sintering, p.mobility_factor, p.surface_energy, p.cap, p.sine, p.active, p.activation_step};
 }
+
+/// True for the laws whose contacts carry a neck.
+template <class Law>
+inline constexpr bool has_necks =
+    !std::is_same_v<Law, KelvinVoigt<LinearSpring>> && !std::is_same_v<Law, KelvinVoigt<HertzSpring>>;
 
 /// Calls visit(spring) with a value of the spring type that the model asks for.
 template <class Visit>

@@ -20,7 +20,7 @@ void visit(Section root, Scene& scene, ScenePlaces& places) {
   read_contact(root, scene, places);
   read_process(root, scene, places);
   read_loads(root, scene);
-  read_integration(root, scene);
+  read_integration(root, scene, places);
   read_output(root, scene);
 }
 

@@ -28,7 +28,7 @@ struct PackingSettings {
 
 /// Particles from a file instead of a powder.
 struct ImportSettings {
-  std::filesystem::path file;
+  std::filesystem::path file;  ///< seen from where the program runs
   enum class Format : std::uint8_t { csv, lammps } format = Format::csv;
   double length_unit = 1;          ///< metres per unit of the file [m]
   std::vector<std::string> types;  ///< material name of LAMMPS type 1, 2, ...
@@ -50,7 +50,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Interface> interfaces;
   ContactModel contact;
-  Container container;
+  Container container;  ///< with a powder: size has the base (periodic: its proportions), height from the packing
   Mat3 cell_vectors = Mat3::Zero();        ///< periodic: edge vectors in columns [m]; zero: from packing or import
   Mat3 velocity_gradient = Mat3::Zero();   ///< periodic [1/s]
   std::optional<Powder> powder;            ///< exactly one of powder and import
@@ -68,7 +68,7 @@ struct Scene {
 };
 
 /// Reads and checks a scene (a file, or a folder that holds scene.toml); overrides are "path.to.key=value".
-/// Throws InputError with file, line and key.
+/// Throws InputError with file, line and key; FileError when the file or the shipped materials cannot be read.
 Scene read_scene(const std::filesystem::path&, const std::vector<std::string>& overrides);
 
 /// The same from text, for tests.

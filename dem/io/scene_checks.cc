@@ -6,6 +6,7 @@
 
 #include "base/quantity.h"
 #include "base/scene_node.h"
+#include "dem/io/material_library.h"
 #include "dem/io/scene_parts.h"
 
 namespace densify::dem {
@@ -49,8 +50,10 @@ void check_materials(const Scene& scene, const ScenePlaces& places) {
       for (std::string& key : missing_for_sintering(own)) keys.push_back(std::move(key));
     }
     if (!keys.empty()) {
-      places.materials[m].fail("", "the contact model needs " + joined(keys) +
-                                       " of this material; set it here, or start from a shipped material with library");
+      places.materials[m].fail("", "lacks " + joined(keys) +
+                                       ", which this contact model needs; set it here, or start from a shipped "
+                                       "material (" +
+                                       joined(library_names()) + ") with the key library");
     }
     const auto uses = [m](const PowderComponent& c) { return c.material == m; };
     if (scene.powder && std::none_of(scene.powder->components.begin(), scene.powder->components.end(), uses)) {
@@ -66,7 +69,8 @@ void check_pair(const Scene& scene, const ScenePlaces& places, std::uint8_t a, s
   const Section& place = given == scene.interfaces.end()
                              ? places.materials[a]
                              : places.interfaces[std::size_t(given - scene.interfaces.begin())];
-  const std::string pair = toml_text(scene.materials[a].name) + " and " + toml_text(scene.materials[b].name);
+  const std::string other = a == b ? "" : " and " + toml_text(scene.materials[b].name);
+  const std::string pair = toml_text(scene.materials[a].name) + other;
   const auto lacks = [&](const Missing& keys) {
     place.fail("", "the contacts of " + pair + " lack " + joined(keys) + "; set it in " +
                        (given == scene.interfaces.end() ? "an" : "this") + " [[interface]] between them");
@@ -78,12 +82,12 @@ void check_pair(const Scene& scene, const ScenePlaces& places, std::uint8_t a, s
   if (!scene.contact.sintering) return;
   if (const Missing keys = missing_for_sintering(face); !keys.empty()) lacks(keys);
   if (scene.contact.sintering->starting_neck >= std::sin(0.5 * face.dihedral_angle)) {
-    places.contact->fail(
-        "sintering", "starting_neck is not below sin(Psi/2) of " + pair + ", the neck at equilibrium (4.32); lower it");
+    places.contact->fail("sintering", "starting_neck is not below sin(Psi/2) of " + pair +
+                                          ", the neck at equilibrium over the radius (4.32); lower it");
   }
 }
 
-// The activation is compared where the material would be hottest.
+// Who never sinters beside another who does is no mistake.
 void check_activation(const Scene& scene, const ScenePlaces& places) {
   double lowest = std::numeric_limits<double>::infinity();
   const auto n = std::uint8_t(scene.materials.size());
@@ -118,6 +122,9 @@ void check_container(const Scene& scene, const ScenePlaces& places) {
   const ContainerShape shape = scene.container.shape;
   const bool periodic = shape == ContainerShape::periodic;
   const bool edges = !scene.cell_vectors.isZero(0);
+  if (!scene.powder && !scene.import) {
+    places.specimen->fail("", "there are no particles; give a [[powder]] or [specimen.import]");
+  }
   if (scene.powder && shape == ContainerShape::free) {
     places.specimen->fail("shape",
                           "a powder needs a cylinder, a box or a periodic cell to be packed in; a free "
@@ -127,6 +134,9 @@ void check_container(const Scene& scene, const ScenePlaces& places) {
   if (scene.powder && edges) places.cell->fail("a", "the cell of a powder follows from its packing; remove a, b, c");
   if (periodic && scene.import && !edges && scene.import->format == ImportSettings::Format::csv) {
     places.specimen->fail("shape", "a table has no periodic cell; give its edge vectors a, b, c in [specimen.cell]");
+  }
+  if (periodic && !scene.integration.gravity.isZero(0)) {
+    places.integration->fail("gravity", "a periodic cell has no bottom on which particles could rest; remove it");
   }
   const WallMaterial& wall = scene.container.material;
   if (std::isnan(wall.youngs_modulus) != std::isnan(wall.poissons_ratio)) {

@@ -17,7 +17,7 @@ struct ScenePlaces {
   std::vector<Section> materials;   ///< in the order of Scene::materials
   std::vector<Section> interfaces;  ///< in the order of Scene::interfaces
   std::vector<Section> powders;     ///< in the order of the components
-  std::optional<Section> specimen, import, cell, walls, contact, process;
+  std::optional<Section> specimen, cell, walls, contact, process, integration;
 };
 
 // Each declares and reads its part; a document for help is visited once with defaults.  All throw InputError.
@@ -29,7 +29,7 @@ void read_walls(Section& root, Scene&, ScenePlaces&);     // after the specimen
 void read_contact(Section& root, Scene&, ScenePlaces&);
 void read_process(Section& root, Scene&, ScenePlaces&);
 void read_loads(Section& root, Scene&);
-void read_integration(Section& root, Scene&);
+void read_integration(Section& root, Scene&, ScenePlaces&);
 void read_output(Section& root, Scene&);
 
 /// What no single part can see: properties the contact model lacks, pressure without a punch, sintering that never

@@ -32,10 +32,11 @@ void read_loads(Section& root, Scene& scene) {
   });
 }
 
-void read_integration(Section& root, Scene& scene) {
+void read_integration(Section& root, Scene& scene, ScenePlaces& places) {
   IntegrationSettings& s = scene.integration;
   constexpr Range share{0.0, 1.0, Bound::exclusive, Bound::inclusive};
   root.section("integration", Need::defaulted, "time steps of the leap-frog (4.8-4.13)", [&](Section& section) {
+    places.integration = section;
     section.choice("rule", s.rule, {{"particle_sum", StepRule::particle_sum}, {"thesis", StepRule::thesis}},
                    Need::optional, "limit from the sums over each particle's contacts, or pair by pair (4.71)-(4.75)");
     section.quantity("step_safety", s.step_safety, dim::none, share, Need::optional,

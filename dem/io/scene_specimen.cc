@@ -136,8 +136,8 @@ void read_cell(Section& section, Scene& scene) {
 void read_specimen(Section& root, Scene& scene, ScenePlaces& places) {
   root.section("specimen", Need::required, "where the particles are at the start", [&](Section& section) {
     places.specimen = section;
-    const bool documenting = section.documenting();
-    const bool powder = scene.powder.has_value();
+    // Without an import a powder is taken for granted, so that a misspelt [[powder]] is found as an unknown key.
+    const bool powder = !section.has("import");
     Container& container = scene.container;
     section.choice("shape", container.shape,
                    {{"cylinder", ContainerShape::cylinder},
@@ -145,24 +145,19 @@ void read_specimen(Section& root, Scene& scene, ScenePlaces& places) {
                     {"periodic", ContainerShape::periodic},
                     {"free", ContainerShape::free}},
                    Need::required, "what holds the particles");
-    if (documenting || powder) {
-      section.integer("seed", scene.powder->seed, 0, largest_seed, Need::optional,
+    if (powder) {
+      std::uint64_t seed = 1;
+      section.integer("seed", seed, 0, largest_seed, Need::optional,
                       "of the order in which sizes and materials are mixed");
+      if (scene.powder) scene.powder->seed = seed;
       section.section("packing", Need::defaulted, "how a powder becomes a green body (App. C)",
                       [&](Section& below) { read_packing(below, scene.packing.emplace(), container.shape); });
     } else {
       refuse_keys(section, {"packing", "seed"}, "belongs to a [[powder]]; imported particles stay where they are");
+      if (scene.powder) section.fail("import", "there is a [[powder]] already; give either a powder or an import");
     }
-    section.section("import", Need::optional, "particles from a file instead of a [[powder]]", [&](Section& below) {
-      places.import = below;
-      read_import(below, scene.import.emplace(), scene);
-    });
-    if (!documenting && powder && scene.import) {
-      section.fail("import", "there is a [[powder]] already; give either a powder or an import");
-    }
-    if (!documenting && !powder && !scene.import) {
-      section.fail("", "there are no particles; give a [[powder]] or [specimen.import]");
-    }
+    section.section("import", Need::optional, "particles from a file instead of a [[powder]]",
+                    [&](Section& below) { read_import(below, scene.import.emplace(), scene); });
     read_size(section, container, powder);
     section.section("cell", Need::optional, "the periodic cell", [&](Section& below) {
       places.cell = below;

@@ -219,9 +219,8 @@ void write_state(Hdf5Writer& file, const State& state) {
   file.table("/walls/contact_tangential", tangential, "m");
 
   const Punch& u = state.punch;
-  file.list<double>(
-      "/state/punch",
-      {u.mass, u.area, u.damping, u.memory, u.velocity, u.mean_velocity, u.mean_acceleration}, "");
+  file.list<double>("/state/punch",
+                    {u.mass, u.area, u.damping, u.memory, u.velocity, u.mean_velocity, u.mean_acceleration}, "");
   file.list<std::uint8_t>("/state/cell_periodic", {std::uint8_t(state.cell.periodic)}, "");
   file.list("/state/cell_h", flat(state.cell.h), "m");
   const Vec3& o = state.cell.origin;

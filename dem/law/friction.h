@@ -1,7 +1,11 @@
 #pragma once
 // Regularised Coulomb friction (4.27, 4.28, Fig. 4.6): a tangential spring that slides at mu times the normal force.
 
+#include <algorithm>
+#include <cmath>
+
 #include "dem/law/contact_model.h"
+#include "dem/law/law.h"
 #include "dem/state/particles.h"
 
 namespace densify::dem {
@@ -16,13 +20,12 @@ struct TangentialInput {
   double step;              ///< [s]
 };
 
-/// Tangential force on i [N]; advances the spring displacement `slip` [m], which turns with the contact plane and is cut
-/// back to what the sliding force stretches.
+/// Tangential force on i [N]; advances the spring displacement `slip` [m], which turns with the contact plane and is
+/// cut back to what the sliding force stretches.
 inline Vec3 coulomb(const FrictionModel& model, double coefficient, const TangentialInput& in, Vec3& slip) {
   const double k = model.tangential_stiffness_ratio * in.normal_stiffness;
-  const double c = model.tangential_damping_ratio > 0
-                       ? 2 * model.tangential_damping_ratio * std::sqrt(in.reduced_mass * k)
-                       : 0.0;
+  const double c =
+      model.tangential_damping_ratio > 0 ? 2 * model.tangential_damping_ratio * std::sqrt(in.reduced_mass * k) : 0.0;
   slip += in.velocity * in.step;
   slip -= slip.dot(in.normal) * in.normal;
   Vec3 force = k * slip + c * in.velocity;
@@ -32,6 +35,18 @@ inline Vec3 coulomb(const FrictionModel& model, double coefficient, const Tangen
     if (k > 0) slip = (force - c * in.velocity) / k;
   }
   return force;
+}
+
+/// Stiffness and damper of a contact as its particles' step limits have to count them: the larger of the normal ones
+/// and 3.5 times those of the sticking tangential spring, because a solid sphere answers it with 1/m + r^2/J = 3.5/m.
+inline Linearisation with_tangential_share(Linearisation l, const ContactModel& model, double reduced_mass) {
+  if (!model.friction) return l;
+  constexpr double rotation_factor = 3.5;
+  const double k = model.friction->tangential_stiffness_ratio * l.stiffness;
+  const double c = 2 * model.friction->tangential_damping_ratio * std::sqrt(reduced_mass * k);
+  l.stiffness = std::max(l.stiffness, rotation_factor * k);
+  l.damper = std::max(l.damper, rotation_factor * c);
+  return l;
 }
 
 }  // namespace densify::dem

@@ -48,18 +48,20 @@ struct SinteringContact {
   double viscosity(double a) const { return a * a * a * a / mobility_factor; }
 
   /// F_sint = pi gamma (4 r (1 - cos(Psi/2)) + a sin(Psi/2)) (4.36) [N].
-  double sintering_force(double a, double r) const {
-    return std::numbers::pi * surface_energy * (cap * r + a * sine);
-  }
+  double sintering_force(double a, double r) const { return std::numbers::pi * surface_energy * (cap * r + a * sine); }
 
   /// Share of flow and sintering force that is switched on: 1 while sintering, 0 for a bond.
   double activity(const NeckHistory& h, double time) const {
     switch (h.phase) {
-      case NeckPhase::activating: return cosine_step(progress(h, time));
-      case NeckPhase::sintering: return 1;
+      case NeckPhase::activating:
+        return cosine_step(progress(h, time));
+      case NeckPhase::sintering:
+        return 1;
       case NeckPhase::arriving:
-      case NeckPhase::deactivating: return 1 - cosine_step(progress(h, time));
-      default: return 0;
+      case NeckPhase::deactivating:
+        return 1 - cosine_step(progress(h, time));
+      default:
+        return 0;
     }
   }
 
@@ -76,9 +78,8 @@ struct SinteringContact {
       begin(in, h);
       const double share = activity(h, in.time);
       const double f_sint = share > 0 ? share * sintering_force(h.radius, in.sintering_radius) : 0;
-      const double f = settings.model == SinteringModel::viscous
-                           ? viscosity(h.radius) * in.rate
-                           : loose.spring.force(h.elastic, in.elastic_radius);
+      const double f = settings.model == SinteringModel::viscous ? viscosity(h.radius) * in.rate
+                                                                 : loose.spring.force(h.elastic, in.elastic_radius);
       return {f + f_sint, f_sint};
     }
     change_phase(in, h);
@@ -102,8 +103,7 @@ struct SinteringContact {
     const double mobility = 1 / series_viscosity(h.phase, neck, share);
     // Theta rule for du_e/dt = rate - F(u_e)/eta, one Newton step: theta 1 backward Euler (L-stable), 1/2 (4.67).
     const double theta = settings.update == MaxwellUpdate::trapezoidal ? 0.5 : 1.0;
-    const double change = in.step *
-                          (in.rate - mobility * loose.spring.force(before, in.elastic_radius)) /
+    const double change = in.step * (in.rate - mobility * loose.spring.force(before, in.elastic_radius)) /
                           (1 + theta * in.step * mobility * k);
     h.elastic = before + change;
     double f = loose.spring.force(h.elastic, in.elastic_radius);
@@ -190,15 +190,19 @@ struct SinteringContact {
     }
     switch (h.phase) {
       case NeckPhase::activating:
-        if (!active) enter(h, NeckPhase::deactivating, time, 1 - done);
-        else if (done >= 1) h.phase = NeckPhase::sintering;
+        if (!active)
+          enter(h, NeckPhase::deactivating, time, 1 - done);
+        else if (done >= 1)
+          h.phase = NeckPhase::sintering;
         break;
       case NeckPhase::sintering:
         if (!active) enter(h, NeckPhase::deactivating, time, 0);
         break;
       case NeckPhase::deactivating:
-        if (active) enter(h, NeckPhase::activating, time, 1 - done);
-        else if (done >= 1) h.phase = NeckPhase::dormant;
+        if (active)
+          enter(h, NeckPhase::activating, time, 1 - done);
+        else if (done >= 1)
+          h.phase = NeckPhase::dormant;
         break;
       case NeckPhase::dormant:
         if (active) enter(h, NeckPhase::activating, time, 0);
@@ -206,7 +210,8 @@ struct SinteringContact {
       case NeckPhase::arriving:
         if (done >= 1) h.phase = NeckPhase::bonded;
         break;
-      default: break;
+      default:
+        break;
     }
   }
 

@@ -10,7 +10,8 @@ namespace {
 
 void require(bool given, const std::string& what, const Material& a, const Material& b) {
   if (given) return;
-  const std::string pair = a.name == b.name ? "material \"" + a.name + "\"" : "\"" + a.name + "\" with \"" + b.name + "\"";
+  const std::string pair =
+      a.name == b.name ? "material \"" + a.name + "\"" : "\"" + a.name + "\" with \"" + b.name + "\"";
   throw InputError("materials: " + what + " of " + pair +
                    " is not given but the contact model needs it; set it in [materials." + a.name + "]" +
                    (a.name == b.name ? "" : " or in an [[interface]] between the two"));
@@ -56,8 +57,10 @@ void PairTable::update(double temperature, double time) {
       p.sine = std::sin(0.5 * f.dihedral_angle);
       p.active = temperature >= f.activation_temperature;
       double& since = active_since_[index(a, b)];
-      if (!p.active) since = unset;
-      else if (std::isnan(since)) since = time;
+      if (!p.active)
+        since = unset;
+      else if (std::isnan(since))
+        since = time;
       p.activation_step = p.active && since == time;
     }
 }

@@ -10,7 +10,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double sphere_volume(double r) { return 4.0 / 3 * M_PI * r * r * r; }
+double sphere_volume(double r) {
+  return 4.0 / 3 * M_PI * r * r * r;
+}
 
 /// Points spread evenly in the unit ball: a Fibonacci spiral with radii at equal shares of volume.
 const std::array<Vec3, 256>& ball_points() {
@@ -60,7 +62,8 @@ Envelope measure_envelope(const Simulation& sim) {
   if (touches("bottom")) low[2] = plane("bottom", 2);
   if (touches("punch")) high[2] = plane("punch", 2);
   const ContainerShape shape = sim.setup().container.shape;
-  if (shape == ContainerShape::box && (touches("wall x-") || touches("wall x+") || touches("wall y-") || touches("wall y+")))
+  if (shape == ContainerShape::box &&
+      (touches("wall x-") || touches("wall x+") || touches("wall y-") || touches("wall y+")))
     for (int axis : {0, 1}) {
       low[axis] = plane(axis == 0 ? "wall x-" : "wall y-", axis);
       high[axis] = plane(axis == 0 ? "wall x+" : "wall y+", axis);
@@ -75,7 +78,9 @@ Envelope measure_envelope(const Simulation& sim) {
   return e;
 }
 
-double relative_density(const Simulation& sim, const Envelope& e) { return solid_volume_now(sim) / e.volume; }
+double relative_density(const Simulation& sim, const Envelope& e) {
+  return solid_volume_now(sim) / e.volume;
+}
 
 double inner_relative_density(const Simulation& sim, double distance) {
   const State& s = sim.state();
@@ -103,8 +108,7 @@ double inner_relative_density(const Simulation& sim, double distance) {
   low[2] = std::max(low[2], base + distance);
   const bool round = radius < infinity;
   if (high[2] <= low[2] || (round ? radius <= 0 : high[0] <= low[0] || high[1] <= low[1])) return unset;
-  const double region =
-      (high[2] - low[2]) * (round ? M_PI * radius * radius : (high[0] - low[0]) * (high[1] - low[1]));
+  const double region = (high[2] - low[2]) * (round ? M_PI * radius * radius : (high[0] - low[0]) * (high[1] - low[1]));
 
   auto inside = [&](const Vec3& x) {
     if (x[2] < low[2] || x[2] > high[2]) return false;

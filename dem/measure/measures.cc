@@ -7,7 +7,9 @@ namespace densify::dem {
 
 namespace {
 
-Mat3 symmetric(const Mat3& a) { return 0.5 * (a + a.transpose()); }
+Mat3 symmetric(const Mat3& a) {
+  return 0.5 * (a + a.transpose());
+}
 
 void measure_necks(const State& s, Measures& m) {
   std::size_t necks = 0, at_equilibrium = 0;

@@ -7,21 +7,21 @@ namespace densify::dem {
 
 struct Measures {
   Envelope envelope;
-  double relative_density = 0;         ///< by envelope (5.5, 5.6)
-  double relative_density_inner = 0;   ///< two mean diameters away from every wall
-  double coordination_number = 0;      ///< touching or necked neighbours (walls not counted), mean
-  double mean_neck_radius = 0;         ///< over the necks [m]
-  double equilibrium_fraction = 0;     ///< necks at equilibrium over all necks
-  Mat3 stress = Mat3::Zero();          ///< (6.10) with wall contacts, tension positive [Pa]
+  double relative_density = 0;           ///< by envelope (5.5, 5.6)
+  double relative_density_inner = 0;     ///< two mean diameters away from every wall
+  double coordination_number = 0;        ///< touching or necked neighbours (walls not counted), mean
+  double mean_neck_radius = 0;           ///< over the necks [m]
+  double equilibrium_fraction = 0;       ///< necks at equilibrium over all necks
+  Mat3 stress = Mat3::Zero();            ///< (6.10) with wall contacts, tension positive [Pa]
   Mat3 sintering_stress = Mat3::Zero();  ///< share of F_sint, affine (6.10) [Pa]
-  double punch_pressure = 0;           ///< powder's force on the punch over its area [Pa]
-  double bottom_pressure = 0;          ///< [Pa]
-  double lateral_pressure = 0;         ///< normal force on the lateral walls over their area in contact [Pa]
-  double unbalanced_force_ratio = 0;   ///< mean resultant over mean contact force
-  double kinetic_energy = 0;           ///< with the scaled masses [J]
-  double elastic_energy = 0;           ///< normal springs of contacts and walls [J]
-  double damping_share = 0;            ///< sum of damper forces over sum of contact forces
-  double largest_overlap = 0;          ///< overlap over the smaller radius, largest of all contacts
+  double punch_pressure = 0;             ///< powder's force on the punch over its area [Pa]
+  double bottom_pressure = 0;            ///< [Pa]
+  double lateral_pressure = 0;           ///< normal force on the lateral walls over their area in contact [Pa]
+  double unbalanced_force_ratio = 0;     ///< mean resultant over mean contact force
+  double kinetic_energy = 0;             ///< with the scaled masses [J]
+  double elastic_energy = 0;             ///< normal springs of contacts and walls [J]
+  double damping_share = 0;              ///< sum of damper forces over sum of contact forces
+  double largest_overlap = 0;            ///< overlap over the smaller radius, largest of all contacts
 };
 
 /// Measures of the state that was just evaluated with `recording` (before it moves on).

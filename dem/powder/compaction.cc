@@ -11,8 +11,9 @@ namespace densify::dem {
 namespace {
 
 // Reduced units: a particle of mean radius weighs 1 kg, every spring is 1 N/m, so a pair swings once in four seconds.
-// Masses go with the surface, as the number of contacts does: one step then suits large and small particles alike.  Slow against that: walls that take `closing` seconds, gravity that presses a column of the specimen's
-// height by about a thousandth of a radius.
+// Masses go with the surface, as the number of contacts does: one step then suits large and small particles alike. Slow
+// against that: walls that take `closing` seconds, gravity that presses a column of the specimen's height by about a
+// thousandth of a radius.
 constexpr double closing = 6000, settling = 3000, rest_of_overlap_check = 1000;
 constexpr double weight_per_column = 1e-3;
 
@@ -23,8 +24,12 @@ double solid(std::span<const double> diameters) {
 }
 
 Setup packing_setup(const CompactionGoal& goal, std::size_t materials, int threads) {
-  Setup s{{}, {}, {}, {}, {}, Schedule(300, 0, {{"closing", closing, 300, 0}, {"settling", settling + 20 * rest_of_overlap_check, 300, 0}}),
-          {}, 300, {}, {}};
+  Setup s{
+      {}, {},
+      {}, {},
+      {}, Schedule(300, 0, {{"closing", closing, 300, 0}, {"settling", settling + 20 * rest_of_overlap_check, 300, 0}}),
+      {}, 300,
+      {}, {}};
   Material any;
   any.density = 1;
   s.materials.assign(materials, any);
@@ -166,8 +171,7 @@ GreenBody compact(std::span<const double> diameters, std::span<const std::uint8_
   body.particles.torque.clear();
   body.cell = state.cell;
   if (periodic) body.container.size = state.cell.h.diagonal();
-  body.relative_density =
-      volume / (periodic ? state.cell.volume() : (round ? 0.25 * M_PI : 1.0) * target.size.prod());
+  body.relative_density = volume / (periodic ? state.cell.volume() : (round ? 0.25 * M_PI : 1.0) * target.size.prod());
   body.steps = state.steps;
   return body;
 }

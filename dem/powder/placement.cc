@@ -49,7 +49,8 @@ class Trial {
   Random random_;
 };
 
-Trial::Trial(std::span<const double> diameters, const Vec3& extent, const PlacementContainer& container, std::uint64_t seed)
+Trial::Trial(std::span<const double> diameters, const Vec3& extent, const PlacementContainer& container,
+             std::uint64_t seed)
     : position(diameters.size()), diameters_(diameters), cylinder_radius_(HUGE_VAL), random_(seed) {
   const double d_max = *std::max_element(diameters.begin(), diameters.end());
   lower_ = Vec3::Zero();

@@ -1,0 +1,78 @@
+// Mistakes in process, loads and integration.
+
+#include <gtest/gtest.h>
+
+#include "tests/input/scene_mistake.h"
+
+using namespace densify::test;
+
+TEST(SceneMistakes, ScheduleThatGoesBackInTime) {
+  EXPECT_EQ(mistake("rate = \"15 K/min\"", "end = \"20 min\""),
+            "scene.toml:34: process.stage.2.end: stage \"heating\" goes back in time (it starts at 1980 s); end counts "
+            "from the start of the process, so give a later one or a duration");
+}
+
+// 0.5 x 1911 K against 600 degC.
+TEST(SceneMistakes, ActivationAboveThePeakTemperature) {
+  EXPECT_EQ(mistake("temperature = \"1400 degC\"", "temperature = \"600 degC\""),
+            "scene.toml:28: process.stage: sintering would never start: its lowest activation temperature is 955.5 K "
+            "and the process peaks at 873.15 K; heat more, lower activation_temperature, or remove "
+            "[contact.sintering]");
+}
+
+TEST(SceneMistakes, PressureWithoutAPunch) {
+  EXPECT_EQ(mistake("[walls.punch]\ndamping_ratio = 0.3", "[walls.punch]\ncontrol = \"fixed\""),
+            "scene.toml:28: process.stage: stage \"loading\": there is no punch that could apply a pressure; set "
+            "walls.punch.control = \"pressure\", or remove the pressure");
+  EXPECT_EQ(message_of(R"toml([materials.Cu]
+library = "Cu"
+[specimen]
+shape = "free"
+[specimen.import]
+file = "particles.csv"
+[process]
+start_pressure = "1 MPa"
+[[process.stage]]
+name = "rest"
+duration = "1 s"
+pressure = "0 Pa"
+)toml"),
+            "scene.toml:8: process.start_pressure: there is no punch that could apply a pressure; choose shape = "
+            "\"cylinder\" or \"box\", or remove the pressure");
+}
+
+TEST(SceneMistakes, EquilibriumOfNecksThatCannotForm) {
+  EXPECT_EQ(message_of(changed("[contact.sintering]\nmodel = \"viscoelastic\"\n", ""),
+                       {"process.stop_when=all_necks_at_equilibrium"}),
+            "--set process.stop_when=all_necks_at_equilibrium: there are no necks without [contact.sintering]; add it, "
+            "or remove this key");
+}
+
+TEST(SceneMistakes, StepThatIsNotPositive) {
+  EXPECT_EQ(mistake_added("fixed_step = \"0 s\"\n"),
+            "scene.toml:38: integration.fixed_step: must be > 0 s, found \"0 s\"");
+}
+
+TEST(SceneMistakes, SafetyAboveOne) {
+  EXPECT_EQ(mistake_added("step_safety = 1.2\n"),
+            "scene.toml:38: integration.step_safety: must be > 0 and <= 1, found 1.2");
+}
+
+TEST(SceneMistakes, NegativeMassScaling) {
+  EXPECT_EQ(mistake("mass_scaling = 1e17", "mass_scaling = -1e17"),
+            "scene.toml:37: integration.mass_scaling: must be > 0, found -1e+17");
+}
+
+TEST(SceneMistakes, LoadOnANegativeParticle) {
+  EXPECT_EQ(mistake_added("[[load]]\nparticle = -1\nforce = [\"1 N\", \"0 N\", \"0 N\"]\n"),
+            "scene.toml:39: load.1.particle: must be >= 0 and <= 4294967295, found -1");
+}
+
+TEST(SceneMistakes, SceneThatIsNotThere) {
+  try {
+    densify::dem::read_scene("no/such/scene.toml", {});
+    FAIL();
+  } catch (const densify::InputError& e) {
+    EXPECT_STREQ(e.what(), "no/such/scene.toml: there is no such scene file");
+  }
+}
