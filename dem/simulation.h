@@ -130,11 +130,15 @@ class Simulation {
   void compute_forces(Recording* record);
   double choose_step();
   void rebuild_lists();
+  void prune_near(double list_age);
+  void require_finite_positions() const;
 
   Setup setup_;
   PairTable table_;
   ForcePass pass_;
   State state_;
+  bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
+  double list_slack_ = 0;        // what may be travelled since the last pruning before the list can be too old [m]
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
 };
