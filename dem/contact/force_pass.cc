@@ -154,13 +154,15 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
     result.sintering = f.sintering;
     double u = in.overlap;
     bool springs = true;  // a viscous contact has no spring to store energy in
-    if constexpr (has_necks<Law>)
-      if (const auto& h = c.neck[pair.place]; h.phase != NeckPhase::loose) {
+    if constexpr (has_necks<Law>) {
+      const auto& h = c.neck[pair.place];
+      if (h.phase != NeckPhase::loose) {
         u = h.elastic;
         springs = c.law.settings.model != SinteringModel::viscous || !Law::flows(h.phase);
-      } else if (in.overlap >= 0) {
-        springs = false;  // the neck was lost in this very step
+      } else {
+        springs = in.overlap < 0;  // otherwise the neck was lost in this very step
       }
+    }
     if (springs) {
       const auto& spring = spring_of(c.law);
       result.elastic_energy = spring.energy(u, in.elastic_radius);
