@@ -310,12 +310,16 @@ double Simulation::choose_step() {
 }
 
 void Simulation::evaluate(Recording* record) {
+  if (evaluated_) throw std::logic_error("Simulation::evaluate was called twice in one step");
   set_environment();
   keep_list_fresh();
   compute_forces(record);
+  evaluated_ = true;
 }
 
 void Simulation::move() {
+  if (!evaluated_) throw std::logic_error("Simulation::move needs evaluate before it");
+  evaluated_ = false;
   const double step = choose_step();
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   if (state_.punch.mass > 0) {
@@ -345,6 +349,7 @@ bool Simulation::all_at_equilibrium() const {
 }
 
 void Simulation::restore(State state) {
+  evaluated_ = false;
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
   table_unsettled_ = true;

@@ -9,7 +9,7 @@ enum class World { frictional, sintering, bonded };
 
 inline const World all_worlds[] = {World::frictional, World::sintering, World::bonded};
 
-/// A free cluster of 32 unequal spheres, shaken; process time is short against its own.
+/// A free cluster of 32 unequal spheres, shaken: flying together with friction, sintering from small necks, or bonded.
 inline Setup make_world(World world) {
   constexpr double radius = 5e-6;
   auto contact = elastic_model(dem::Elasticity::hertz, dem::unset);
@@ -23,19 +23,26 @@ inline Setup make_world(World world) {
   const double temperature = world == World::sintering ? 1500 : 400;
   const Schedule schedule(temperature, 0, {{"heat", 1e4, temperature + (world == World::frictional ? 0 : 100), 0}});
   Setup s = empty_setup(material, contact, schedule);
-  fill_cluster(s, 2, 1.97 * radius, radius, 29);
+  fill_cluster(s, 2, (world == World::frictional ? 2.3 : 1.97) * radius, radius, 29);
   s.integration.mass_scaling = world == World::frictional ? 1 : 1e14;
   shake(s.particles, world == World::frictional ? 0.1 : 1e-9, 31);
   if (world == World::frictional)
-    for (std::size_t p = 0; p < s.particles.size(); ++p)
+    for (std::size_t p = 0; p < s.particles.size(); ++p) {
+      s.particles.body[p].velocity += 3e5 * (Vec3::Constant(1.2e-5) - s.particles.body[p].position);
       s.particles.angular_velocity.push_back(2e4 * Vec3(std::sin(double(p)), std::cos(2.0 * double(p)), 0.3));
+    }
   return s;
 }
 
-/// Runs a setup; bonds where the world has them.
+/// Joins the overlapping spheres by necks free of stress where the world has necks.
+inline void begin_world(World world, Simulation& sim) {
+  if (world == World::bonded) bond_all(sim, dem::NeckPhase::dormant, 0.3);
+  if (world == World::sintering) bond_all(sim, dem::NeckPhase::activating, 0.1);
+}
+
 inline Simulation run_world(World world, Setup s, int steps) {
   Simulation sim(std::move(s));
-  if (world == World::bonded) bond_all(sim, dem::NeckPhase::dormant, 0.3);
+  begin_world(world, sim);
   for (int n = 0; n < steps; ++n) sim.advance(nullptr);
   return sim;
 }
