@@ -111,6 +111,7 @@ int run_command(const RunCommand& command) {
 
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is to be a failed write, as a full disk is
   ProgressLine line(command.quiet);
   dem::RunOptions options;
   options.folder = folder;
