@@ -40,6 +40,9 @@ std::uint8_t material_index(const Scene& scene, const ImportedParticles& importe
 
 ImportedParticles read_import(const Scene& scene) {
   const auto& s = *scene.import;
+  if (!std::filesystem::exists(s.file) || std::filesystem::is_directory(s.file))
+    throw InputError("specimen.import.file: there is no file " + s.file.string() +
+                     "; its path counts from the folder of the scene");
   return s.format == ImportSettings::Format::csv ? read_particle_table(s.file, s.length_unit)
                                                  : read_lammps_data(s.file, s.length_unit);
 }

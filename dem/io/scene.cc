@@ -33,6 +33,7 @@ Scene read(SceneDocument document) {
   scene.effective_text = document.effective_text();
   if (places.packing)
     scene.places.emplace_back("specimen.packing.green_density", places.packing->where("green_density"));
+  if (places.import) scene.places.emplace_back("specimen.import.file", places.import->where("file"));
   if (places.integration) scene.places.emplace_back("integration.fixed_step", places.integration->where("fixed_step"));
   return scene;
 }
