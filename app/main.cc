@@ -1,12 +1,14 @@
 // The command line: one function a command, nothing else.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "app/bench.h"
 #include "app/check.h"
 #include "app/run.h"
 #include "base/check.h"
+#include "base/nearest.h"
 #include "base/version.h"
 #include "dem/io/scene.h"
 
@@ -23,6 +25,9 @@ int run_main(int argc, char** argv) {
   app.set_version_flag(
       "--version", "densify " + std::string(densify::version()) + " (" + std::string(densify::git_revision()) + ")");
   app.require_subcommand(1);
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("densify: ") + error.what() + "; densify --help says what there is\n";
+  });
 
   densify::app::RunCommand run;
   CLI::App* run_command = app.add_subcommand("run", "Run a scene to its end");
@@ -65,6 +70,12 @@ int run_main(int argc, char** argv) {
       app.add_subcommand("help-scene", "Every key of a scene with unit, range, default and meaning");
   CLI::App* help_command = app.add_subcommand("help", "This text");
 
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  if (argc > 1 && argv[1][0] != '-' && std::find(commands.begin(), commands.end(), argv[1]) == commands.end())
+    throw densify::InputError("\"" + std::string(argv[1]) + "\" is not a command; densify --help lists them" +
+                              densify::did_you_mean(argv[1], commands));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
