@@ -35,10 +35,6 @@ std::vector<Wall> make_walls(const Container& c) {
   return walls;
 }
 
-double punch_area(const Container& c) {
-  return c.shape == ContainerShape::cylinder ? 0.25 * M_PI * c.size[0] * c.size[0] : c.size[0] * c.size[1];
-}
-
 /// Order of the particles along a grid of about one large particle a cell, so that neighbours are near in memory.
 std::vector<std::uint32_t> spatial_order(const Particles& particles) {
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
@@ -130,7 +126,7 @@ Simulation::Simulation(Setup setup)
   punch_wall_ = wall("punch");
   if (punch_wall_ && setup_.container.punch) {
     state_.punch.mass = setup_.container.punch_settings.mass_fraction * setup_.integration.mass_scaling * powder_mass;
-    state_.punch.area = punch_area(setup_.container);
+    state_.punch.area = punch_area();
   }
   Vec3 unused;
   for (const auto& w : state_.walls.wall)
@@ -148,6 +144,15 @@ std::optional<std::size_t> Simulation::wall(std::string_view name) const {
   return std::nullopt;
 }
 
+double Simulation::punch_area() const {
+  const auto& walls = state_.walls.wall;
+  if (const auto die = wall("die")) return M_PI * walls[*die].radius * walls[*die].radius;
+  const auto x = wall("wall x+"), y = wall("wall y+");
+  if (!x || !y) return 0;
+  return (walls[*x].point[0] - walls[*wall("wall x-")].point[0]) *
+         (walls[*y].point[1] - walls[*wall("wall y-")].point[1]);
+}
+
 double Simulation::real_mass(std::size_t p) const {
   return 1 / (state_.particles.body[p].inverse_mass * setup_.integration.mass_scaling);
 }
@@ -163,6 +168,7 @@ void Simulation::set_environment() {
   std::fill(expansion_step_.begin(), expansion_step_.end(), 0.0);
   // At constant temperature only the clock of an activation that has just begun still matters.
   const bool changed = t != state_.temperature;
+  for (auto& w : state_.walls.wall) w.thermal_rate = 0;
   if (changed || table_unsettled_) {
     table_.update(t, state_.time);
     state_.active_since = table_.active_since();
@@ -186,12 +192,17 @@ void Simulation::set_environment() {
   const double a = setup_.container.wall_expansion;
   if (a != 0) {
     const double stretch = (1 + a * dt) / (1 + a * old_dt);
+    const double rate = state_.last_step > 0 ? (1 - 1 / stretch) / state_.last_step : 0.0;
     for (auto& w : state_.walls.wall) {
       if (w.shape == WallShape::cylinder)
         w.radius *= stretch;
       else if (std::abs(w.normal[2]) < 0.5)
         w.point *= stretch;  // lateral planes of a box
+      else
+        continue;
+      w.thermal_rate = rate;
     }
+    if (state_.punch.mass > 0) state_.punch.area = punch_area();
   }
   state_.temperature = t;
 }
@@ -199,7 +210,12 @@ void Simulation::set_environment() {
 void Simulation::rebuild_lists() {
   const HistoryNeeds needs{setup_.contact.friction.has_value(),
                            setup_.contact.sintering && (table_.any_active() || !state_.contacts.neck.empty())};
-  rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs);
+  try {
+    rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs);
+  } catch (const InputError& error) {  // a cell that has become too narrow is no mistake of the input any more
+    if (state_.steps == 0) throw;
+    throw RunError(error.what());
+  }
   state_.walls.rebuild(state_.particles, state_.contacts.skin);
   pass_.list_changed(state_.contacts, state_.particles.size());
   prune_near(0);
@@ -217,7 +233,8 @@ void Simulation::keep_list_fresh() {
   const int threads = setup_.integration.threads;
   const double travel = pass_.near().travel(state_.particles, state_.cell, state_.expansion, threads);
   if (std::isnan(travel)) require_finite_positions();
-  const bool first_necks = setup_.contact.sintering && state_.contacts.neck.empty() && table_.any_active();
+  const bool first_necks =
+      setup_.contact.sintering && state_.contacts.neck.empty() && state_.contacts.size() > 0 && table_.any_active();
   bool rebuilding = first_necks || state_.walls.age(state_.contacts.skin) >= 1;
   const bool prune = travel >= pass_.near().skin();
   // The list is rebuilt exactly when its own age says so, whatever was pruned since; travel only spares looking.
@@ -282,14 +299,7 @@ double Simulation::choose_step() {
     const StepLimit limit = step_limit();
     state_.critical_step = limit.critical;
     state_.stable_step = settings.step_safety * limit.critical;
-    if (!std::isnan(settings.fixed_step)) {
-      if (settings.fixed_step > limit.critical)
-        throw RunError("integration.fixed_step of " + std::to_string(settings.fixed_step) +
-                       " s has come above the stability limit of " + std::to_string(limit.critical) + " s (particle " +
-                       std::to_string(state_.particles.id[limit.particle]) + ", process time " +
-                       std::to_string(state_.time) + " s); use a smaller one, or leave it out");
-      state_.stable_step = settings.fixed_step;
-    }
+    if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
     if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
     if (state_.punch.mass > 0) state_.punch.tune(limit.punch_stiffness, setup_.container.punch_settings.damping_ratio);
   }

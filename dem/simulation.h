@@ -119,6 +119,8 @@ class Simulation {
   double solid_volume() const;
   /// Index of a wall by name; no value when the container has none of that name.
   std::optional<std::size_t> wall(std::string_view name) const;
+  /// Present area under the punch, the hot one in an expanding die; 0 without lateral walls [m^2].
+  double punch_area() const;
   std::size_t bytes() const;         ///< memory of state and scratch
   std::size_t contacts_now() const;  ///< touching or necked pairs
 

@@ -99,7 +99,8 @@ void Walls::compute(Particles& particles, const PairTable& table, const ContactM
       c.tangential.setZero();
       continue;
     }
-    const Vec3 wall_velocity = w.shape == WallShape::plane ? w.velocity : Vec3(w.radius_rate * n);
+    const Vec3 wall_velocity = w.shape == WallShape::plane ? Vec3(w.velocity + w.thermal_rate * w.point)
+                                                           : Vec3((w.radius_rate + w.thermal_rate * w.radius) * n);
     const Vec3 v = wall_velocity - b.velocity;
     const double vn = v.dot(n);
     const std::uint8_t m = particles.material[c.particle];

@@ -18,6 +18,7 @@ struct Wall {
   double radius = 0;             ///< of a cylinder [m]
   Vec3 velocity = Vec3::Zero();  ///< of a plane [m/s]
   double radius_rate = 0;        ///< of a cylinder [m/s]
+  double thermal_rate = 0;       ///< relative growth rate of a lateral wall's position by expansion [1/s]
 };
 
 /// What walls are made of.

@@ -47,6 +47,14 @@ const auto& spring_of(const Law& law) {
     return law.spring;
 }
 
+/// What heat adds to the distance at which a pair is at rest [m].  Loose spheres meet at their surfaces; through a neck
+/// the body is whole, so that only the way from each centre to the neck's plane grows and a bonded packing expands as
+/// one body, however unequal its overlaps.
+inline double thermal_growth(const Body& a, const Body& b, double overlap, double of_i, double of_j, bool necked) {
+  const double cut = necked ? 0.5 * overlap : 0.0;
+  return of_i * (a.radius + cut) + of_j * (b.radius + cut);
+}
+
 /// Everything uniform over one bucket.  Plain pointers, so that the stores of a pass do not make the compiler read the
 /// vectors' ends again.
 template <class Law>
@@ -67,10 +75,10 @@ struct Bucket {
   std::uint8_t material_a;
   PassTime clock;
 
-  /// What the radii of a pair have grown by since the last pass [m].
-  double grown(std::uint32_t i, double ri, double rj) const {
+  /// What heat has added to the pair's distance at rest since the last pass [m].
+  double grown(std::uint32_t i, const Body& a, const Body& b, double overlap, bool necked) const {
     const bool swapped = material[i] != material_a;
-    return (swapped ? growth_b : growth_a) * ri + (swapped ? growth_a : growth_b) * rj;
+    return thermal_growth(a, b, overlap, swapped ? growth_b : growth_a, swapped ? growth_a : growth_b, necked);
   }
 };
 
@@ -84,14 +92,12 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
   Vec3 branch = b.position - a.position;
   if (c.shift) branch += c.shift[pair.image()];
   const double reach = a.radius + b.radius, d2 = branch.squaredNorm();
-  if (d2 >= reach * reach) {
-    bool necked = false;
-    if constexpr (has_necks<Law>) necked = c.neck[pair.place].phase != NeckPhase::loose;
-    if (!necked) {
-      if constexpr (with_friction) c.tangential[pair.place].setZero();
-      sink.skip(index, pair);
-      return;
-    }
+  bool necked = false;
+  if constexpr (has_necks<Law>) necked = c.neck[pair.place].phase != NeckPhase::loose;
+  if (d2 >= reach * reach && !necked) {
+    if constexpr (with_friction) c.tangential[pair.place].setZero();
+    sink.skip(index, pair);
+    return;
   }
   const double d = std::sqrt(d2);
   const Vec3 n = (1 / d) * branch;
@@ -103,7 +109,7 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
   in.overlap = d - reach;
   in.rate = vn;
   if ((c.growth_a != 0 || c.growth_b != 0) && c.clock.step > 0)
-    in.rate -= c.grown(i, a.radius, b.radius) / c.clock.step;
+    in.rate -= c.grown(i, a, b, in.overlap, necked) / c.clock.step;
   const double product = a.radius * b.radius / reach;
   in.elastic_radius = c.hertz_radius == HertzRadius::equivalent ? 2 * product : product;
   in.reduced_mass = 1 / (a.inverse_mass + b.inverse_mass);
@@ -152,6 +158,8 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
       if (const auto& h = c.neck[pair.place]; h.phase != NeckPhase::loose) {
         u = h.elastic;
         springs = c.law.settings.model != SinteringModel::viscous || !Law::flows(h.phase);
+      } else if (in.overlap >= 0) {
+        springs = false;  // the neck was lost in this very step
       }
     if (springs) {
       const auto& spring = spring_of(c.law);
@@ -322,10 +330,11 @@ NormalInput normal_input(const ContactModel& model, const Particles& particles, 
   const double d = branch.norm();
   Vec3 v = b.velocity - a.velocity;
   if (cell.periodic) v += cell.velocity_gradient * branch;
-  const double grown =
-      expansion_step[particles.material[i]] * a.radius + expansion_step[particles.material[j]] * b.radius;
   NormalInput in;
   in.overlap = d - a.radius - b.radius;
+  const bool necked = !list.neck.empty() && list.neck[k].phase != NeckPhase::loose;
+  const double grown = thermal_growth(a, b, in.overlap, expansion_step[particles.material[i]],
+                                      expansion_step[particles.material[j]], necked);
   in.rate = v.dot(branch) / d - (clock.step > 0 ? grown / clock.step : 0.0);
   in.elastic_radius = elastic_radius(model, a.radius, b.radius);
   in.sintering_radius = model.sintering ? sintering_radius(model.sintering->radius, a.radius, b.radius) : 0;
