@@ -128,8 +128,7 @@ double approach(const ListMoment& then, const Particles& particles, const Cell& 
                 const std::vector<double>& expansion, int threads) {
   const bool deformed = cell.periodic && cell.h != then.h;
   const Mat3 f = deformed ? Mat3(cell.h * then.h.inverse()) : Mat3(Mat3::Identity());
-  double furthest = 0;
-  in_parts(particles.size(), threads, [&](std::size_t begin, std::size_t end) {
+  const double furthest = largest_of_parts(particles.size(), threads, [&](std::size_t begin, std::size_t end) {
     const Body* const body = particles.body.data();
     const Vec3* const before = then.position.data();
     double part = 0, sum = 0;  // the sum is not finite when any displacement is not
@@ -140,9 +139,7 @@ double approach(const ListMoment& then, const Particles& particles, const Cell& 
       part = std::max(part, d2);
       sum += d2;
     }
-    if (!std::isfinite(sum)) part = std::numeric_limits<double>::infinity();
-#pragma omp critical(densify_approach)
-    furthest = std::max(furthest, part);
+    return std::isfinite(sum) ? part : std::numeric_limits<double>::infinity();
   });
   if (std::isinf(furthest)) return unset;
   double growth = 0;
