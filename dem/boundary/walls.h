@@ -89,6 +89,7 @@ class Walls {
   std::vector<Wall> reference_;  // walls when the contacts were listed
   std::vector<Vec3> force_;
   std::vector<double> normal_force_, stiffness_, damping_;
+  std::vector<double> moduli_;  // of each material against the walls, of the last pass [Pa]
 };
 
 }  // namespace densify::dem
