@@ -126,7 +126,9 @@ def draw_rate(cases):
         chosen &= np.diff(h["time_s"], prepend=0) > 40  # the row at the end of a stage may follow another closely
         density, rate = h["relative_density"][chosen], h["densification_rate_per_s"][chosen]
         smooth = np.convolve(rate, np.ones(3) / 3, mode="valid")
-        axis.plot(density[1:-1], 60 * smooth, style, label=name.replace("_", " "))
+        process = "process II" if name.startswith("process_2") else "process I"
+        reading = "second reading" if name.endswith("reading") else "reading of the text"
+        axis.plot(density[1:-1], 60 * smooth, style, label=f"{process}, {reading}")
     axis.set_xlabel("relative density")
     axis.set_ylabel("densification rate [1/min]")
     axis.grid(alpha=0.3)

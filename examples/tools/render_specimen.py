@@ -208,7 +208,8 @@ def main():
     width, height, _ = image.GetDimensions()
     pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3]
     # A palette makes the file a third as large.
-    Image.fromarray(np.ascontiguousarray(pixels)).quantize(256, dither=Image.Dither.NONE).save(options.output, optimize=True)
+    few = Image.fromarray(np.ascontiguousarray(pixels)).quantize(256, method=Image.Quantize.MAXCOVERAGE)
+    few.save(options.output, optimize=True)
 
 
 if __name__ == "__main__":
