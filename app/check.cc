@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.h"
 #include "dem/integrate/time_step.h"
 #include "dem/specimen.h"
 
@@ -36,10 +37,7 @@ double forecast_limit(const dem::Scene& scene, const dem::PowderSample& powder) 
   return limit;
 }
 
-}  // namespace
-
-int check_command(const CheckCommand& command) {
-  const dem::Scene scene = dem::read_scene(command.scene, command.overrides);
+int check(const dem::Scene& scene, const CheckCommand& command) {
   const dem::PowderSample powder = dem::particles_of(scene);
   const auto n = double(powder.diameter.size());
   double limit;
@@ -69,6 +67,17 @@ int check_command(const CheckCommand& command) {
              steps * n * seconds_per_particle_step / command.threads, command.threads, command.threads == 1 ? "" : "s");
   fmt::print("the scene is valid\n");
   return 0;
+}
+
+}  // namespace
+
+int check_command(const CheckCommand& command) {
+  const dem::Scene scene = dem::read_scene(command.scene, command.overrides);
+  try {
+    return check(scene, command);
+  } catch (const InputError& error) {
+    throw InputError(scene.placed(error.what()));
+  }
 }
 
 }  // namespace densify::app

@@ -1,11 +1,14 @@
 // The command line: one function a command, nothing else.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
+#include "app/bench.h"
 #include "app/check.h"
 #include "app/run.h"
 #include "base/check.h"
+#include "base/nearest.h"
 #include "base/version.h"
 #include "dem/io/scene.h"
 
@@ -22,6 +25,9 @@ int run_main(int argc, char** argv) {
   app.set_version_flag(
       "--version", "densify " + std::string(densify::version()) + " (" + std::string(densify::git_revision()) + ")");
   app.require_subcommand(1);
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("densify: ") + error.what() + "; densify --help says what there is\n";
+  });
 
   densify::app::RunCommand run;
   CLI::App* run_command = app.add_subcommand("run", "Run a scene to its end");
@@ -40,10 +46,36 @@ int run_main(int argc, char** argv) {
   check_command->add_option("--set", check.overrides, "path.to.key=value, again for each")->take_all();
   check_command->add_option("--threads", check.threads, "Threads")->check(CLI::Range(1, 1024));
 
+  densify::app::BenchOptions bench;
+  CLI::App* bench_command = app.add_subcommand("bench", "Time the contact pass on the shipped packings and check it");
+  bench_command->add_option("--packing", bench.packings, "m2k, m20k or p1751; without it all three")->take_all();
+  bench_command->add_option("--case", bench.cases, "A (no friction), B (friction) or S (sintering); without it A and B")
+      ->take_all();
+  bench_command->add_option("--threads", bench.threads, "Threads")->check(CLI::Range(1, 1024));
+  bench_command->add_option("--steps", bench.steps, "Steps of one repeat; without it as many as take half a second");
+  bench_command->add_flag("--json", bench.json, "JSON instead of a table");
+
+  densify::app::BenchOptions bench;
+  CLI::App* bench_command = app.add_subcommand("bench", "Measure the speed on standard packings");
+  bench_command->add_option("--packing", bench.packings, "m2k, m20k or p1751; without it all three")
+      ->check(CLI::IsMember({"m2k", "m20k", "p1751"}));
+  bench_command
+      ->add_option("--case", bench.cases, "A frictionless, B friction and rotation, S sintering; without it A and B")
+      ->check(CLI::IsMember({"A", "B", "S"}));
+  bench_command->add_option("--threads", bench.threads, "Threads")->check(CLI::Range(1, 1024));
+  bench_command->add_option("--steps", bench.steps, "Steps of one repeat; without it about half a second");
+  bench_command->add_flag("--json", bench.json, "JSON instead of a table");
+
   CLI::App* scene_command =
       app.add_subcommand("help-scene", "Every key of a scene with unit, range, default and meaning");
   CLI::App* help_command = app.add_subcommand("help", "This text");
 
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  if (argc > 1 && argv[1][0] != '-' && std::find(commands.begin(), commands.end(), argv[1]) == commands.end())
+    throw densify::InputError("\"" + std::string(argv[1]) + "\" is not a command; densify --help lists them" +
+                              densify::did_you_mean(argv[1], commands));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -52,6 +84,8 @@ int run_main(int argc, char** argv) {
   }
   if (run_command->parsed()) return densify::app::run_command(run);
   if (check_command->parsed()) return densify::app::check_command(check);
+  if (bench_command->parsed()) return densify::app::bench_command(bench);
+  if (bench_command->parsed()) return densify::app::bench_command(bench);
   if (scene_command->parsed()) std::fputs(densify::dem::scene_help().c_str(), stdout);
   if (help_command->parsed()) std::fputs(app.help().c_str(), stdout);
   return 0;

@@ -42,13 +42,14 @@ class ProgressLine {
       if (tenth == last_tenth_) return;
       last_tenth_ = tenth;
     }
-    std::string line =
-        packing ? fmt::format("packing {:3.0f} %  left {}", 100 * p.share, duration(p.seconds_left))
-                : fmt::format(
-                      "{:3.0f} %  {:<16.16s} t {:>8.4g} s  T {:6.1f} K  p {:6.2f} MPa  density {:.4f}  {:>9.3g} "
-                      "steps/s  left {}",
-                      100 * p.share, p.stage, p.time, p.temperature, p.pressure * 1e-6, p.relative_density,
-                      p.steps_per_second, duration(p.seconds_left));
+    std::string line = packing
+                           ? fmt::format("packing {:3.0f} %  left {}", 100 * p.share, duration(p.seconds_left))
+                           : fmt::format(
+                                 "{:3.0f} %  {:<16.16s} t {:>8.4g} s  T {:6.1f} K  p {:6.2f} MPa  density {}  {:>9.3g} "
+                                 "steps/s  left {}",
+                                 100 * p.share, p.stage, p.time, p.temperature, p.pressure * 1e-6,
+                                 std::isfinite(p.relative_density) ? fmt::format("{:.4f}", p.relative_density) : "-",
+                                 p.steps_per_second, duration(p.seconds_left));
     if (terminal_) {
       fmt::print(stderr, "\r{:<118s}", line);
       std::fflush(stderr);
@@ -111,6 +112,7 @@ int run_command(const RunCommand& command) {
 
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is to be a failed write, as a full disk is
   ProgressLine line(command.quiet);
   dem::RunOptions options;
   options.folder = folder;

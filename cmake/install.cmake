@@ -13,6 +13,8 @@ install(TARGETS densify)
 install(DIRECTORY base dem DESTINATION ${include_dir} FILES_MATCHING PATTERN *.h)
 install(DIRECTORY dem/material/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/densify/materials OPTIONAL
         FILES_MATCHING PATTERN *.toml)  # OPTIONAL: tests/install counts what arrives
+install(DIRECTORY examples/benchmark/packings DESTINATION ${CMAKE_INSTALL_DATADIR}/densify/benchmark
+        FILES_MATCHING PATTERN *.data)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(cmake/DensifyConfig.cmake.in ${PROJECT_BINARY_DIR}/DensifyConfig.cmake

@@ -86,9 +86,7 @@ std::vector<double> history_row(const Simulation& sim, const Measures& m, Histor
     row.insert(row.end(), {m.mean_neck_radius, m.equilibrium_fraction});
   }
   if (has_walls(setup)) {
-    const double area = setup.container.shape == ContainerShape::cylinder
-                            ? 0.25 * M_PI * setup.container.size[0] * setup.container.size[0]
-                            : setup.container.size[0] * setup.container.size[1];
+    const double area = sim.punch_area();
     const double mean = memory.punch_time > 0 ? memory.punch_impulse / memory.punch_time / area : m.punch_pressure;
     row.insert(row.end(), {m.punch_pressure, mean, m.bottom_pressure, m.lateral_pressure});
   }

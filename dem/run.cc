@@ -11,6 +11,7 @@
 #include "dem/history_row.h"
 #include "dem/io/checkpoint.h"
 #include "dem/io/result_file.h"
+#include "dem/io/result_folder.h"
 #include "dem/io/visualisation.h"
 
 namespace densify::dem {
@@ -42,18 +43,24 @@ struct Paths {
   fs::path checkpoint, specimen, history, pictures;
 };
 
-void open_folder(const RunOptions& options) {
-  std::error_code error;
-  const bool used = fs::exists(options.folder, error) && !fs::is_empty(options.folder, error);
-  if (options.mode == Continue::fresh && used)
-    throw InputError("--out " + options.folder.string() +
-                     ": the folder holds other results; nothing was changed.  Choose another folder, or continue that "
-                     "run with --resume");
-  if (options.mode == Continue::resume && !fs::exists(options.folder / "checkpoint.h5"))
-    throw InputError("--resume: " + options.folder.string() +
-                     " holds no checkpoint.h5, so there is nothing to resume; start the run without --resume");
-  fs::create_directories(options.folder, error);
-  if (error) throw FileError("cannot make the folder " + options.folder.string() + " (" + error.message() + ")");
+/// The first multiple of the interval after a time [s]; never, without an interval.
+double next_multiple(double interval, double time) {
+  return std::isnan(interval) ? std::numeric_limits<double>::infinity() : interval * (std::floor(time / interval) + 1);
+}
+
+/// "particles 3 and 17": the pair with the largest overlap in units of the smaller radius.
+std::string deepest_pair(const State& state) {
+  double largest = 0;
+  std::string names;
+  for (std::size_t k = 0; k < state.contacts.size(); ++k) {
+    const std::size_t i = state.contacts.i(k), j = state.contacts.j(k);
+    const double ri = state.particles.body[i].radius, rj = state.particles.body[j].radius;
+    const double overlap = (ri + rj - branch_vector(state, k).norm()) / std::min(ri, rj);
+    if (overlap <= largest) continue;
+    largest = overlap;
+    names = "particles " + std::to_string(state.particles.id[i]) + " and " + std::to_string(state.particles.id[j]);
+  }
+  return names;
 }
 
 /// The numbers behind the scene's numbers, as comments that a scene reader skips.
@@ -119,7 +126,8 @@ class Run {
   CheckpointOwner owner_;
   HistoryMemory memory_;
   RunPosition position_;
-  double next_row_ = 0, next_snapshot_ = 0;  // process time [s]
+  bool folder_made_ = false;
+  double last_snapshot_ = 0, next_row_ = 0, next_snapshot_ = 0;  // process time [s]
   double row_interval_ = 0, snapshot_interval_ = 0;
   double last_checkpoint_ = 0, last_progress_ = -1;  // wall time [s]
   double start_time_ = 0, start_wall_ = 0;           // where this session took up the process
@@ -129,10 +137,12 @@ class Run {
 };
 
 void Run::prepare() {
-  open_folder(options_);
+  folder_made_ = open_result_folder(options_.folder, options_.mode);
+  owner_ = {fingerprint(scene_), options_.version};
   std::optional<Specimen> specimen;
   GreenBody body;
   if (options_.mode == Continue::resume) {
+    require_checkpoint(paths_.checkpoint, owner_);  // before a specimen of another scene is made to fit this one
     body = read_specimen(paths_.specimen);
   } else {
     specimen = make_specimen(scene_, options_.threads, [this](double share) {
@@ -153,27 +163,28 @@ void Run::prepare() {
   const Schedule& schedule = scene_.schedule;
   row_interval_ = std::isnan(scene_.output.history_interval) ? schedule.end() / 400 : scene_.output.history_interval;
   snapshot_interval_ = scene_.output.snapshot_interval;
-  owner_ = {fingerprint(scene_), options_.version};
   const auto columns = history_columns(sim_->setup());
   RunDescription description{scene_.effective_text + derived_text(scene_, *sim_, specimen ? &*specimen : nullptr),
                              std::string(version()), std::string(git_revision()), columns};
   if (options_.mode == Continue::resume) {
     position_ = read_checkpoint(paths_.checkpoint, *sim_, owner_);
-    if (position_.numbers.size() != HistoryMemory::size + 2)
+    if (position_.numbers.size() != HistoryMemory::size + 1)
       throw InputError(paths_.checkpoint.string() + " is not readable (truncated or damaged)");
     memory_ = HistoryMemory::from(position_.numbers);
-    next_row_ = position_.numbers[HistoryMemory::size];
-    next_snapshot_ = position_.numbers[HistoryMemory::size + 1];
+    last_snapshot_ = position_.numbers[HistoryMemory::size];
     history_.emplace(HistoryFile::resume(paths_.history, columns, position_.history_bytes));
     say("resumed at process time " + text("%.6g s", sim_->state().time));
   } else {
     write_specimen(paths_.specimen, body);
     history_.emplace(HistoryFile::create(paths_.history, columns));
     position_.history_bytes = history_->bytes();
-    if (std::isnan(snapshot_interval_)) next_snapshot_ = std::numeric_limits<double>::infinity();
+    write_checkpoint_now();  // from here on the folder can be resumed
   }
+  next_row_ = next_multiple(row_interval_, memory_.time);
+  next_snapshot_ = next_multiple(snapshot_interval_, last_snapshot_);
   results_.emplace(options_.folder, description, position_.snapshots);
   if (scene_.output.visualisation) pictures_.emplace(paths_.pictures, position_.snapshots);
+  if (options_.mode == Continue::fresh) write_checkpoint_now();  // from here on a kill leaves something to resume
   start_time_ = sim_->state().time;
   start_steps_ = sim_->state().steps;
   start_wall_ = last_checkpoint_ = clock_.seconds();
@@ -196,11 +207,10 @@ void Run::record(const Recording& recording, bool breakpoint) {
     memory_.time = state.time;
   }
   if (!std::isfinite(m.relative_density) || !m.stress.allFinite())
-    throw RunError("density or stress is no longer finite at process time " + text("%.6g s", state.time));
+    throw RunError("density or stress is no longer finite; try a smaller step_safety or mass_scaling");
   if (m.largest_overlap > 1.95)
-    throw RunError("two particles have passed through each other (overlap " + text("%.2f", m.largest_overlap) +
-                   " of the smaller radius) at process time " + text("%.6g s", state.time) +
-                   "; the contacts are too soft for the load or the step too large");
+    throw RunError(deepest_pair(state) + " have passed through each other (overlap " + text("%.2f", m.largest_overlap) +
+                   " of the smaller radius); the contacts are too soft for the load or the step too large");
   const bool loose = !sim_->table().any_active() && scene_.contact.damping_ratio > 0 && sim_->pressure() > 0;
   if (loose && m.damping_share > 0.01 && summary_.warnings.empty())
     summary_.warnings.push_back("dampers carry " + text("%.1f %%", 100 * m.damping_share) +
@@ -208,7 +218,7 @@ void Run::record(const Recording& recording, bool breakpoint) {
                                 ": the mass scaling makes (4.24) viscous; lower contact.damping_ratio or mass_scaling");
   position_.history_bytes = history_->add_row(history_row(*sim_, m, memory_), stage_name(state.time));
   ++position_.history_rows;
-  while (next_row_ <= state.time) next_row_ += row_interval_;
+  next_row_ = next_multiple(row_interval_, state.time);
   summary_.last = m;
 
   if (breakpoint || state.time >= next_snapshot_) {
@@ -218,16 +228,22 @@ void Run::record(const Recording& recording, bool breakpoint) {
     results_->add_snapshot(snapshot);
     if (pictures_) pictures_->add(snapshot);
     position_.snapshots = results_->snapshots();
-    while (next_snapshot_ <= state.time) next_snapshot_ += snapshot_interval_;
+    last_snapshot_ = state.time;
+    next_snapshot_ = next_multiple(snapshot_interval_, state.time);
   }
   output_seconds_ += watch.seconds();
 }
 
 void Run::write_checkpoint_now() {
   const Stopwatch watch;
+  // The last good checkpoint must stay when the last step has spoilt the state.
+  for (std::size_t p = 0; p < sim_->state().particles.size(); ++p)
+    if (const Body& b = sim_->state().particles.body[p]; !b.position.allFinite() || !b.velocity.allFinite())
+      throw RunError("position or velocity of particle " + std::to_string(sim_->state().particles.id[p]) +
+                     " is no longer finite; try a smaller step_safety or mass_scaling");
   history_->sync();
   position_.numbers = memory_.numbers();
-  position_.numbers.insert(position_.numbers.end(), {next_row_, next_snapshot_});
+  position_.numbers.push_back(last_snapshot_);
   write_checkpoint(paths_.checkpoint, *sim_, position_, owner_);
   last_checkpoint_ = clock_.seconds();
   checkpoint_seconds_ += watch.seconds();
@@ -262,6 +278,10 @@ void Run::loop() {
         throw Interrupted("interrupted at process time " + text("%.6g s", state.time) +
                           "; continue with --resume --out " + options_.folder.string());
       }
+      if (scene_.integration.fixed_step > state.critical_step && state.critical_step > 0)
+        throw RunError("integration.fixed_step of " + text("%.4g s", scene_.integration.fixed_step) +
+                       " has come above the stability limit of " + text("%.4g s", state.critical_step) +
+                       " at process time " + text("%.6g s", state.time) + "; use a smaller one, or leave it out");
       if (clock_.seconds() - last_checkpoint_ > scene_.output.checkpoint_interval) write_checkpoint_now();
       if (clock_.seconds() - last_progress_ > 0.25) report_progress();
     }
@@ -285,16 +305,21 @@ void Run::loop() {
 }
 
 RunSummary Run::whole() {
-  prepare();
+  try {
+    prepare();
+  } catch (...) {
+    std::error_code in_use;  // leaves no empty folder behind; one with files stays
+    if (folder_made_) fs::remove(options_.folder, in_use);
+    throw;
+  }
   try {
     loop();
   } catch (const RunError& error) {
-    std::error_code none;
-    const bool saved = fs::exists(paths_.checkpoint, none);
-    throw RunError(std::string(error.what()) + ".  " +
-                   (saved ? "The last good checkpoint is " + paths_.checkpoint.string()
-                          : std::string("No checkpoint had been written yet")) +
-                   "; the history so far is " + paths_.history.string());
+    const State& state = sim_->state();
+    throw RunError(error.what() + text(".  This was at process time %.6g s", state.time) + " (step " +
+                   std::to_string(state.steps) + ", stage \"" + stage_name(state.time) +
+                   "\").  The last good checkpoint is " + paths_.checkpoint.string() + "; the history so far is " +
+                   paths_.history.string());
   }
   const Stopwatch watch;
   results_->consolidate(ResultFile::usual_largest);
@@ -320,8 +345,10 @@ RunSummary Run::whole() {
 
 }  // namespace
 
-RunSummary run(const Scene& scene, const RunOptions& options) {
+RunSummary run(const Scene& scene, const RunOptions& options) try {
   return Run(scene, options).whole();
+} catch (const InputError& error) {
+  throw InputError(scene.placed(error.what()));
 }
 
 std::string fingerprint(const Scene& scene) {

@@ -5,12 +5,11 @@
 #include <filesystem>
 #include <functional>
 
+#include "dem/io/result_folder.h"
 #include "dem/measure/measures.h"
 #include "dem/specimen.h"
 
 namespace densify::dem {
-
-enum class Continue : std::uint8_t { fresh, resume };
 
 /// What a progress line needs.
 struct Progress {

@@ -35,10 +35,6 @@ std::vector<Wall> make_walls(const Container& c) {
   return walls;
 }
 
-double punch_area(const Container& c) {
-  return c.shape == ContainerShape::cylinder ? 0.25 * M_PI * c.size[0] * c.size[0] : c.size[0] * c.size[1];
-}
-
 /// Order of the particles along a grid of about one large particle a cell, so that neighbours are near in memory.
 std::vector<std::uint32_t> spatial_order(const Particles& particles) {
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
@@ -68,6 +64,13 @@ void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
   std::vector<T> sorted(values.size());
   for (std::size_t p = 0; p < order.size(); ++p) sorted[p] = values[order[p]];
   values = std::move(sorted);
+}
+
+bool activation_has_begun(const PairTable& table) {
+  for (std::uint8_t a = 0; a < table.materials(); ++a)
+    for (std::uint8_t b = a; b < table.materials(); ++b)
+      if (table.row(a, b).activation_step) return true;
+  return false;
 }
 
 double sphere_volume(double r) {
@@ -123,7 +126,7 @@ Simulation::Simulation(Setup setup)
   punch_wall_ = wall("punch");
   if (punch_wall_ && setup_.container.punch) {
     state_.punch.mass = setup_.container.punch_settings.mass_fraction * setup_.integration.mass_scaling * powder_mass;
-    state_.punch.area = punch_area(setup_.container);
+    state_.punch.area = punch_area();
   }
   Vec3 unused;
   for (const auto& w : state_.walls.wall)
@@ -141,6 +144,15 @@ std::optional<std::size_t> Simulation::wall(std::string_view name) const {
   return std::nullopt;
 }
 
+double Simulation::punch_area() const {
+  const auto& walls = state_.walls.wall;
+  if (const auto die = wall("die")) return M_PI * walls[*die].radius * walls[*die].radius;
+  const auto x = wall("wall x+"), y = wall("wall y+");
+  if (!x || !y) return 0;
+  return (walls[*x].point[0] - walls[*wall("wall x-")].point[0]) *
+         (walls[*y].point[1] - walls[*wall("wall y-")].point[1]);
+}
+
 double Simulation::real_mass(std::size_t p) const {
   return 1 / (state_.particles.body[p].inverse_mass * setup_.integration.mass_scaling);
 }
@@ -156,8 +168,12 @@ void Simulation::set_environment() {
   std::fill(expansion_step_.begin(), expansion_step_.end(), 0.0);
   // At constant temperature only the clock of an activation that has just begun still matters.
   const bool changed = t != state_.temperature;
-  if (changed || setup_.contact.sintering) table_.update(t, state_.time);
-  state_.active_since = table_.active_since();
+  for (auto& w : state_.walls.wall) w.thermal_rate = 0;
+  if (changed || table_unsettled_) {
+    table_.update(t, state_.time);
+    state_.active_since = table_.active_since();
+    table_unsettled_ = setup_.contact.sintering && activation_has_begun(table_);
+  }
   if (!changed) return;
   const double dt = t - setup_.reference_temperature;
   const double old_dt = std::isnan(state_.temperature) ? 0.0 : state_.temperature - setup_.reference_temperature;
@@ -176,12 +192,17 @@ void Simulation::set_environment() {
   const double a = setup_.container.wall_expansion;
   if (a != 0) {
     const double stretch = (1 + a * dt) / (1 + a * old_dt);
+    const double rate = state_.last_step > 0 ? (1 - 1 / stretch) / state_.last_step : 0.0;
     for (auto& w : state_.walls.wall) {
       if (w.shape == WallShape::cylinder)
         w.radius *= stretch;
       else if (std::abs(w.normal[2]) < 0.5)
         w.point *= stretch;  // lateral planes of a box
+      else
+        continue;
+      w.thermal_rate = rate;
     }
+    if (state_.punch.mass > 0) state_.punch.area = punch_area();
   }
   state_.temperature = t;
 }
@@ -189,23 +210,48 @@ void Simulation::set_environment() {
 void Simulation::rebuild_lists() {
   const HistoryNeeds needs{setup_.contact.friction.has_value(),
                            setup_.contact.sintering && (table_.any_active() || !state_.contacts.neck.empty())};
-  rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs);
+  try {
+    rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs);
+  } catch (const InputError& error) {  // a cell that has become too narrow is no mistake of the input any more
+    if (state_.steps == 0) throw;
+    throw RunError(error.what());
+  }
   state_.walls.rebuild(state_.particles, state_.contacts.skin);
   pass_.list_changed(state_.contacts, state_.particles.size());
+  prune_near(0);
+}
+
+void Simulation::require_finite_positions() const {
+  for (std::size_t p = 0; p < state_.particles.size(); ++p)
+    if (!state_.particles.body[p].position.allFinite())
+      throw RunError("the position of particle " + std::to_string(state_.particles.id[p]) +
+                     " is no longer finite at process time " + std::to_string(state_.time) +
+                     " s; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
 }
 
 void Simulation::keep_list_fresh() {
-  const double age =
-      list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, setup_.integration.threads);
-  if (std::isnan(age)) {
-    for (std::size_t p = 0; p < state_.particles.size(); ++p)
-      if (!state_.particles.body[p].position.allFinite())
-        throw RunError("the position of particle " + std::to_string(state_.particles.id[p]) +
-                       " is no longer finite at process time " + std::to_string(state_.time) +
-                       " s; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
+  const int threads = setup_.integration.threads;
+  const double travel = pass_.near().travel(state_.particles, state_.cell, state_.expansion, threads);
+  if (std::isnan(travel)) require_finite_positions();
+  const bool first_necks =
+      setup_.contact.sintering && state_.contacts.neck.empty() && state_.contacts.size() > 0 && table_.any_active();
+  bool rebuilding = first_necks || state_.walls.age(state_.contacts.skin) >= 1;
+  const bool prune = travel >= pass_.near().skin();
+  // The list is rebuilt exactly when its own age says so, whatever was pruned since; travel only spares looking.
+  if (!rebuilding && (prune || travel >= list_slack_)) {
+    const double age = list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, threads);
+    if (std::isnan(age)) require_finite_positions();
+    rebuilding = age >= 1;
+    if (!rebuilding && prune) prune_near(age);
   }
-  const bool first_necks = setup_.contact.sintering && state_.contacts.neck.empty() && table_.any_active();
-  if (age >= 1 || first_necks || state_.walls.age(state_.contacts.skin) >= 1) rebuild_lists();
+  if (rebuilding) rebuild_lists();
+}
+
+void Simulation::prune_near(double list_age) {
+  pass_.near().prune(state_.contacts, state_.particles, state_.cell, state_.expansion);
+  pass_.near_changed(state_.particles.size());
+  constexpr double rounding = 1e-9;  // of the sum of two distances
+  list_slack_ = (1 - list_age - rounding) * state_.contacts.skin;
 }
 
 void Simulation::compute_forces(Recording* record) {
@@ -253,14 +299,7 @@ double Simulation::choose_step() {
     const StepLimit limit = step_limit();
     state_.critical_step = limit.critical;
     state_.stable_step = settings.step_safety * limit.critical;
-    if (!std::isnan(settings.fixed_step)) {
-      if (settings.fixed_step > limit.critical)
-        throw RunError("integration.fixed_step of " + std::to_string(settings.fixed_step) +
-                       " s has come above the stability limit of " + std::to_string(limit.critical) + " s (particle " +
-                       std::to_string(state_.particles.id[limit.particle]) + ", process time " +
-                       std::to_string(state_.time) + " s); use a smaller one, or leave it out");
-      state_.stable_step = settings.fixed_step;
-    }
+    if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
     if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
     if (state_.punch.mass > 0) state_.punch.tune(limit.punch_stiffness, setup_.container.punch_settings.damping_ratio);
   }
@@ -271,20 +310,23 @@ double Simulation::choose_step() {
 }
 
 void Simulation::evaluate(Recording* record) {
+  if (evaluated_) throw std::logic_error("Simulation::evaluate was called twice in one step");
   set_environment();
   keep_list_fresh();
   compute_forces(record);
+  evaluated_ = true;
 }
 
 void Simulation::move() {
+  if (!evaluated_) throw std::logic_error("Simulation::move needs evaluate before it");
+  evaluated_ = false;
   const double step = choose_step();
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
-  kick(state_.particles, kick_step, setup_.integration.drag, setup_.integration.threads);
   if (state_.punch.mass > 0) {
     state_.punch.kick(state_.walls.normal_force()[*punch_wall_], pressure(), kick_step);
     state_.walls.wall[*punch_wall_].velocity = Vec3(0, 0, state_.punch.velocity);
   }
-  drift(state_.particles, state_.cell, step, setup_.integration.threads);
+  leapfrog(state_.particles, state_.cell, {kick_step, step}, setup_.integration.drag, setup_.integration.threads);
   for (auto& w : state_.walls.wall) {
     w.point += step * w.velocity;
     w.radius += step * w.radius_rate;
@@ -307,8 +349,10 @@ bool Simulation::all_at_equilibrium() const {
 }
 
 void Simulation::restore(State state) {
+  evaluated_ = false;
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
+  table_unsettled_ = true;
   const double since_time = state_.time - state_.last_step;
   if (!std::isnan(state_.temperature)) table_.update(state_.temperature, since_time);
   pass_.list_changed(state_.contacts, state_.particles.size());

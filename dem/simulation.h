@@ -85,13 +85,14 @@ class Simulation {
   explicit Simulation(Setup setup);
 
   /// First half of a step: environment, lists and forces at the present time.  With `record` given it also fills it;
-  /// the trajectory is the same with and without.  Once a step, since histories advance.  Throws RunError when the
-  /// state is no longer sound.
+  /// the trajectory is the same with and without.  Once a step, since histories advance: a second call before `move`
+  /// throws std::logic_error.  Throws RunError when the state is no longer sound.
   void evaluate(Recording* record);
-  /// Second half of a step: chooses its length and moves particles, punch and cell.
+  /// Second half of a step: chooses its length and moves particles, punch and cell.  Needs `evaluate` before.
   void move();
+  /// One step, or the rest of it after an `evaluate`.
   void advance(Recording* record = nullptr) {
-    evaluate(record);
+    if (!evaluated_) evaluate(record);
     move();
   }
 
@@ -119,6 +120,8 @@ class Simulation {
   double solid_volume() const;
   /// Index of a wall by name; no value when the container has none of that name.
   std::optional<std::size_t> wall(std::string_view name) const;
+  /// Present area under the punch, the hot one in an expanding die; 0 without lateral walls [m^2].
+  double punch_area() const;
   std::size_t bytes() const;         ///< memory of state and scratch
   std::size_t contacts_now() const;  ///< touching or necked pairs
 
@@ -128,11 +131,16 @@ class Simulation {
   void compute_forces(Recording* record);
   double choose_step();
   void rebuild_lists();
+  void prune_near(double list_age);
+  void require_finite_positions() const;
 
   Setup setup_;
   PairTable table_;
   ForcePass pass_;
   State state_;
+  bool evaluated_ = false;       // between evaluate() and move()
+  bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
+  double list_slack_ = 0;        // what may be travelled since the last pruning before the list can be too old [m]
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
 };

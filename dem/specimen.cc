@@ -40,6 +40,9 @@ std::uint8_t material_index(const Scene& scene, const ImportedParticles& importe
 
 ImportedParticles read_import(const Scene& scene) {
   const auto& s = *scene.import;
+  if (!std::filesystem::exists(s.file) || std::filesystem::is_directory(s.file))
+    throw InputError("specimen.import.file: there is no file " + s.file.string() +
+                     "; its path counts from the folder of the scene");
   return s.format == ImportSettings::Format::csv ? read_particle_table(s.file, s.length_unit)
                                                  : read_lammps_data(s.file, s.length_unit);
 }
@@ -59,6 +62,31 @@ Cell import_cell(const Scene& scene, const ImportedParticles& imported) {
   return cell;
 }
 
+/// How far a sphere's surface is beyond the walls of a container [m]; negative inside.
+double beyond_walls(const Container& container, const Vec3& x, double r) {
+  const Vec3& size = container.size;
+  if (container.shape != ContainerShape::cylinder && container.shape != ContainerShape::box) return -r;
+  double beyond = std::max(r - x[2], x[2] + r - size[2]);
+  if (container.shape == ContainerShape::cylinder) return std::max(beyond, std::hypot(x[0], x[1]) + r - 0.5 * size[0]);
+  for (int axis : {0, 1}) beyond = std::max({beyond, r - x[axis], x[axis] + r - size[axis]});
+  return beyond;
+}
+
+/// A packing whose particles stick out of the container has not reached its density, whatever their mutual overlaps.
+void reject_unpacked(const GreenBody& body, double green_density) {
+  constexpr double stuck = 0.5;  // of the radius; what presses against a wall while packing is some per cent of it
+  for (std::size_t k = 0; k < body.particles.size(); ++k) {
+    const double r = body.particles.reference_radius[k];
+    const double beyond = beyond_walls(body.container, body.particles.body[k].position, r);
+    if (beyond > stuck * r)
+      throw InputError(
+          formatted("specimen.packing.green_density: %g is not reachable: particle %.0f", green_density,
+                    double(body.particles.id[k])) +
+          formatted(" does not fit and stands %.3g um (%.0f %% of its radius)", beyond * 1e6, 100 * beyond / r) +
+          " outside the container; lower green_density, give more powder, or a narrower container");
+  }
+}
+
 GreenBody import_body(const Scene& scene) {
   ImportedParticles imported = read_import(scene);
   GreenBody body;
@@ -69,32 +97,17 @@ GreenBody import_body(const Scene& scene) {
   reject_overlaps(imported, body.cell, scene.import->largest_overlap);
   Particles& p = body.particles;
   for (std::size_t k = 0; k < imported.size(); ++k) {
+    const double r = imported.radius[k], beyond = beyond_walls(body.container, imported.position[k], r);
+    if (beyond > scene.import->largest_overlap * r)
+      throw InputError(imported.file + ":" + std::to_string(imported.line[k]) + ": particle " + std::to_string(k) +
+                       " lies " + formatted("%.3g um (%.0f %% of its radius)", beyond * 1e6, 100 * beyond / r) +
+                       " outside the container; move it inside or enlarge the container");
     p.body.push_back({imported.position[k], imported.radius[k], Vec3::Zero(), 1});
     p.reference_radius.push_back(imported.radius[k]);
     p.material.push_back(material_index(scene, imported, k));
     p.id.push_back(std::uint32_t(k));
   }
   return body;
-}
-
-/// Particles whose surface is beyond a wall by more than the import's largest overlap are a mistake, not a packing.
-void reject_outside(const GreenBody& body, double largest_overlap) {
-  const Vec3& size = body.container.size;
-  const ContainerShape shape = body.container.shape;
-  if (shape != ContainerShape::cylinder && shape != ContainerShape::box) return;
-  for (std::size_t k = 0; k < body.particles.size(); ++k) {
-    const Vec3& x = body.particles.body[k].position;
-    const double r = body.particles.reference_radius[k];
-    double beyond = std::max(r - x[2], x[2] + r - size[2]);
-    if (shape == ContainerShape::cylinder)
-      beyond = std::max(beyond, std::hypot(x[0], x[1]) + r - 0.5 * size[0]);
-    else
-      for (int axis : {0, 1}) beyond = std::max({beyond, r - x[axis], x[axis] + r - size[axis]});
-    if (beyond > largest_overlap * r)
-      throw InputError("specimen: particle " + std::to_string(body.particles.id[k]) + " lies " +
-                       formatted("%.3g um (%.0f %% of its radius)", beyond * 1e6, 100 * beyond / r) +
-                       " outside the container; move it inside or enlarge the container");
-  }
 }
 
 }  // namespace
@@ -114,13 +127,13 @@ Specimen make_specimen(const Scene& scene, int threads, const PackingProgress& p
   Specimen specimen;
   if (scene.import) {
     specimen.body = import_body(scene);
-    reject_outside(specimen.body, scene.import->largest_overlap);
   } else {
     const PowderSample sample = draw(*scene.powder);
     const PackingSettings settings = scene.packing.value_or(PackingSettings{});
     const CompactionGoal goal{scene.container, settings.green_density, settings.friction, settings.largest_overlap,
                               settings.seed};
     specimen.body = compact(sample.diameter, sample.material, goal, threads, progress);
+    reject_unpacked(specimen.body, settings.green_density);
   }
 
   std::vector<double> diameters;
@@ -178,7 +191,7 @@ void write_specimen(const std::filesystem::path& path, const GreenBody& body) {
   file.commit(Durability::power_loss);
 }
 
-GreenBody read_specimen(const std::filesystem::path& path) {
+GreenBody read_specimen(const std::filesystem::path& path) try {
   const Hdf5Reader file(path);
   GreenBody body;
   const auto position = file.read<double>("position");
@@ -203,6 +216,8 @@ GreenBody read_specimen(const std::filesystem::path& path) {
   body.mean_overlap = summary[3];
   body.steps = std::uint64_t(summary[4]);
   return body;
+} catch (const FileError& error) {
+  throw InputError(std::string(error.what()) + "; start again without --resume");
 }
 
 }  // namespace densify::dem

@@ -23,7 +23,8 @@ PowderSample particles_of(const Scene&);
 /// Everything that a Simulation of the scene needs.
 Setup make_setup(const Scene&, const GreenBody&, int threads);
 
-/// Writes and reads a finished specimen bit for bit, so that a resumed run need not pack again.
+/// Writes and reads a finished specimen bit for bit, so that a resumed run need not pack again.  Reading throws
+/// InputError for a file that is missing or damaged.
 void write_specimen(const std::filesystem::path&, const GreenBody&);
 GreenBody read_specimen(const std::filesystem::path&);
 

@@ -88,8 +88,8 @@ void Walls::compute(Particles& particles, const PairTable& table, const ContactM
   force_.assign(wall.size(), Vec3::Zero());
   normal_force_.assign(wall.size(), 0);
   if (record) record->clear();
-  std::vector<double> moduli(table.materials());
-  for (std::size_t m = 0; m < moduli.size(); ++m) moduli[m] = modulus(table, model, std::uint8_t(m));
+  moduli_.resize(table.materials());
+  for (std::size_t m = 0; m < moduli_.size(); ++m) moduli_[m] = modulus(table, model, std::uint8_t(m));
   Vec3 n;
   for (auto& c : contacts_) {
     const Wall& w = wall[c.wall];
@@ -99,13 +99,14 @@ void Walls::compute(Particles& particles, const PairTable& table, const ContactM
       c.tangential.setZero();
       continue;
     }
-    const Vec3 wall_velocity = w.shape == WallShape::plane ? w.velocity : Vec3(w.radius_rate * n);
+    const Vec3 wall_velocity = w.shape == WallShape::plane ? Vec3(w.velocity + w.thermal_rate * w.point)
+                                                           : Vec3((w.radius_rate + w.thermal_rate * w.radius) * n);
     const Vec3 v = wall_velocity - b.velocity;
     const double vn = v.dot(n);
     const std::uint8_t m = particles.material[c.particle];
     const double growth = clock.step > 0 ? expansion_step[m] * b.radius / clock.step : 0.0;
     const NormalInput in = wall_input(b, g, vn - growth, clock);
-    with_wall_law(model, moduli[m], [&](const auto& law) {
+    with_wall_law(model, moduli_[m], [&](const auto& law) {
       const double fn = law.update(in).total;
       Vec3 f = fn * n;
       if (model.friction) {

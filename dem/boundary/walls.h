@@ -18,6 +18,7 @@ struct Wall {
   double radius = 0;             ///< of a cylinder [m]
   Vec3 velocity = Vec3::Zero();  ///< of a plane [m/s]
   double radius_rate = 0;        ///< of a cylinder [m/s]
+  double thermal_rate = 0;       ///< relative growth rate of a lateral wall's position by expansion [1/s]
 };
 
 /// What walls are made of.
@@ -88,6 +89,7 @@ class Walls {
   std::vector<Wall> reference_;  // walls when the contacts were listed
   std::vector<Vec3> force_;
   std::vector<double> normal_force_, stiffness_, damping_;
+  std::vector<double> moduli_;  // of each material against the walls, of the last pass [Pa]
 };
 
 }  // namespace densify::dem

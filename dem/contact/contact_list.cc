@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "dem/contact/neighbour_search.h"
+#include "dem/parallel.h"
 
 namespace densify::dem {
 
@@ -123,28 +124,37 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
   list = std::move(fresh);
 }
 
-double list_age(const ContactList& list, const Particles& particles, const Cell& cell,
+double approach(const ListMoment& then, const Particles& particles, const Cell& cell,
                 const std::vector<double>& expansion, int threads) {
-  const std::ptrdiff_t n = std::ptrdiff_t(particles.size());
-  const bool deformed = cell.periodic && cell.h != list.reference_h;
-  const Mat3 f = deformed ? Mat3(cell.h * list.reference_h.inverse()) : Mat3(Mat3::Identity());
-  double furthest = 0;
-  bool finite = true;
-#pragma omp parallel for num_threads(threads) if (threads > 1) reduction(max : furthest) reduction(&& : finite)
-  for (std::ptrdiff_t p = 0; p < n; ++p) {
-    const Vec3& x = particles.body[std::size_t(p)].position;
-    const Vec3& x0 = list.reference_position[std::size_t(p)];
-    const double d2 = deformed ? (x - cell.origin - f * (x0 - cell.origin)).squaredNorm() : (x - x0).squaredNorm();
-    furthest = std::max(furthest, d2);
-    finite = finite && d2 <= std::numeric_limits<double>::max();
-  }
-  if (!finite) return unset;
+  const bool deformed = cell.periodic && cell.h != then.h;
+  const Mat3 f = deformed ? Mat3(cell.h * then.h.inverse()) : Mat3(Mat3::Identity());
+  const double furthest = largest_of_parts(particles.size(), threads, [&](std::size_t begin, std::size_t end) {
+    const Body* const body = particles.body.data();
+    const Vec3* const before = then.position.data();
+    double part = 0, sum = 0;  // the sum is not finite when any displacement is not
+    for (std::size_t p = begin; p < end; ++p) {
+      const Vec3& x = body[p].position;
+      const double d2 =
+          deformed ? (x - cell.origin - f * (before[p] - cell.origin)).squaredNorm() : (x - before[p]).squaredNorm();
+      part = std::max(part, d2);
+      sum += d2;
+    }
+    return std::isfinite(sum) ? part : std::numeric_limits<double>::infinity();
+  });
+  if (std::isinf(furthest)) return unset;
   double growth = 0;
   for (std::size_t m = 0; m < expansion.size(); ++m)
-    growth = std::max(growth, std::abs(expansion[m] / list.reference_expansion[m] - 1));
+    growth = std::max(growth, std::abs(expansion[m] / then.expansion[m] - 1));
   const double strain = deformed ? (f - Mat3::Identity()).norm() : 0;
-  const double reach = 2 * list.largest_radius;
-  return (2 * std::sqrt(furthest) + growth * reach + strain * (reach + list.skin)) / list.skin;
+  const double reach = 2 * then.largest_radius;
+  return 2 * std::sqrt(furthest) + growth * reach + strain * (reach + then.skin);
+}
+
+double list_age(const ContactList& list, const Particles& particles, const Cell& cell,
+                const std::vector<double>& expansion, int threads) {
+  const ListMoment built{list.reference_position, list.reference_h, list.reference_expansion, list.largest_radius,
+                         list.skin};
+  return approach(built, particles, cell, expansion, threads) / list.skin;
 }
 
 }  // namespace densify::dem

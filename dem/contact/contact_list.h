@@ -47,7 +47,18 @@ struct HistoryNeeds {
 /// pair that has a neck stays in the list at any distance.
 void rebuild(ContactList&, Particles&, const Cell&, const std::vector<double>& expansion, HistoryNeeds);
 
-/// Largest displacement since the list was built, as a share of what its skin allows: rebuild at 1 or above.
+/// Positions, cell and thermal stretches of an earlier moment, and the largest radius and skin of a list made then.
+struct ListMoment {
+  const std::vector<Vec3>& position;     ///< [m]
+  const Mat3& h;                         ///< cell [m]
+  const std::vector<double>& expansion;  ///< thermal stretch of each material
+  double largest_radius, skin;           ///< [m]
+};
+
+/// How far the surfaces of two particles can have approached since then; NaN when a position is not finite. [m]
+double approach(const ListMoment&, const Particles&, const Cell&, const std::vector<double>& expansion, int threads);
+
+/// Largest approach since the list was built, as a share of what its skin allows: rebuild at 1 or above.
 /// NaN when any position is not finite.
 double list_age(const ContactList&, const Particles&, const Cell&, const std::vector<double>& expansion, int threads);
 

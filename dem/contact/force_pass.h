@@ -1,7 +1,9 @@
 #pragma once
 // The contact pass: every contact's law, then the sum over each particle's contacts in one fixed order.
 
-#include "dem/contact/contact_list.h"
+#include <type_traits>
+
+#include "dem/contact/near_list.h"
 #include "dem/material/pair_table.h"
 
 namespace densify::dem {
@@ -36,20 +38,40 @@ class ForcePass {
   void compute(Particles&, ContactList&, const Cell&, const PairTable&, const std::vector<double>& expansion_step,
                PassTime, std::vector<ContactRecord>* record);
 
-  /// To be called after every rebuild of the list.
+  /// To be called after every rebuild of the list; the next passes visit all its pairs until near() is pruned.
   void list_changed(const ContactList&, std::size_t particles);
+
+  /// The pairs that the passes visit; who prunes it must prune again before its travel() reaches its skin().
+  NearList& near() { return near_; }
+  /// To be called after pruning.
+  void near_changed(std::size_t particles);
 
   const ContactModel& model() const { return model_; }
   int threads() const { return threads_; }
   std::size_t bytes() const;
 
  private:
-  void gather(Particles&, const ContactList&);
+  /// What a particle's sum needs of one pair.
+  struct Share {
+    Vec3 force, couple;
+    double lever_i, lever_j;
+  };
+  struct ShareSink;
+
+  template <class Law>
+  void run_bucket(const Law&, std::size_t bucket, Particles&, ContactList&, const Cell&,
+                  const std::vector<double>& expansion_step, PassTime, std::vector<ContactRecord>* record);
+  void add_recorded(Particles&, const std::vector<ContactRecord>&);
+  void gather(Particles&) const;
 
   ContactModel model_;
   int threads_;
-  std::vector<ContactRecord> scratch_;    // several threads only
-  std::vector<std::uint32_t> incidence_;  // several threads only: contact << 1 | side, ascending for each particle
+  NearList near_;
+  std::optional<ImageShifts> shifts_;  // of the cell below
+  Mat3 shifts_h_ = Mat3::Zero();       // [m]
+  // Several threads only:
+  std::vector<Share> shares_;             // of each near pair
+  std::vector<std::uint32_t> incidence_;  // near pair << 1 | side, ascending for each particle
   std::vector<std::size_t> incidence_begin_;
 };
 
@@ -70,6 +92,11 @@ SinteringContact<Spring> make_sintering(const ContactModel& m, const PairPropert
   const KelvinVoigt<Spring> loose{make_spring<Spring>(m, p), m.damping_ratio};
   return {loose, *m.sintering, p.mobility_factor, p.surface_energy, p.cap, p.sine, p.active, p.activation_step};
 }
+
+/// True for the laws whose contacts carry a neck.
+template <class Law>
+inline constexpr bool has_necks =
+    !std::is_same_v<Law, KelvinVoigt<LinearSpring>> && !std::is_same_v<Law, KelvinVoigt<HertzSpring>>;
 
 /// Calls visit(spring) with a value of the spring type that the model asks for.
 template <class Visit>

@@ -1,33 +1,38 @@
 #include "dem/integrate/leapfrog.h"
 
+#include "dem/parallel.h"
+
 namespace densify::dem {
 
-void kick(Particles& particles, double step, double drag, int threads) {
-  const auto n = std::ptrdiff_t(particles.size());
-  const bool rotates = !particles.torque.empty();
-  const double kept = 1 / (1 + drag * step);
-#pragma omp parallel for num_threads(threads) if (threads > 1) schedule(static)
-  for (std::ptrdiff_t q = 0; q < n; ++q) {
-    const auto p = std::size_t(q);
-    Body& b = particles.body[p];
-    b.velocity += (b.inverse_mass * step) * particles.force[p];
-    if (drag > 0) b.velocity *= kept;
-    if (!rotates) continue;
+namespace {
+
+void kick_spins(Particles& particles, double step, double kept, std::size_t begin, std::size_t end) {
+  for (std::size_t p = begin; p < end; ++p) {
+    const Body& b = particles.body[p];
     particles.angular_velocity[p] += (2.5 * b.inverse_mass / (b.radius * b.radius) * step) * particles.torque[p];
-    if (drag > 0) particles.angular_velocity[p] *= kept;
+    particles.angular_velocity[p] *= kept;
   }
 }
 
-void drift(Particles& particles, Cell& cell, double step, int threads) {
-  const auto n = std::ptrdiff_t(particles.size());
+}  // namespace
+
+void leapfrog(Particles& particles, Cell& cell, LeapfrogSteps steps, double drag, int threads) {
+  const bool rotates = !particles.torque.empty();
+  const double kept = 1 / (1 + drag * steps.kick);
   const bool deforming = cell.periodic && !cell.velocity_gradient.isZero(0);
-  const Mat3 flow = step * cell.velocity_gradient;
-#pragma omp parallel for num_threads(threads) if (threads > 1) schedule(static)
-  for (std::ptrdiff_t q = 0; q < n; ++q) {
-    Body& b = particles.body[std::size_t(q)];
-    if (deforming) b.position += flow * (b.position - cell.origin);
-    b.position += step * b.velocity;
-  }
+  const Mat3 flow = steps.drift * cell.velocity_gradient;
+  const Vec3 origin = cell.origin;
+  in_parts(particles.size(), threads, [&](std::size_t begin, std::size_t end) {
+    if (rotates) kick_spins(particles, steps.kick, kept, begin, end);
+    Body* const body = particles.body.data();
+    const Vec3* const force = particles.force.data();
+    for (std::size_t p = begin; p < end; ++p) {
+      Body& b = body[p];
+      b.velocity = kept * (b.velocity + (b.inverse_mass * steps.kick) * force[p]);
+      if (deforming) b.position += flow * (b.position - origin);
+      b.position += steps.drift * b.velocity;
+    }
+  });
   if (deforming) cell.h += flow * cell.h;
 }
 

@@ -5,11 +5,14 @@
 
 namespace densify::dem {
 
-/// v^{n+1/2} = v^{n-1/2} + F/m dt (4.8, 4.9) and the same for spin (4.11, 4.12), with J = 2/5 m r^2; `drag` is a
-/// mass-proportional rate [1/s] used by packing only.
-void kick(Particles&, double step, double drag, int threads);
+/// Steps of one move: `kick` between the middles of the last step and this one, `drift` this one [s].
+struct LeapfrogSteps {
+  double kick, drift;
+};
 
-/// x^{n+1} = x^n + v dt (4.10); a deforming cell carries its particles with it.
-void drift(Particles&, Cell&, double step, int threads);
+/// v^{n+1/2} = v^{n-1/2} + F/m dt (4.8, 4.9) and the same for spin (4.11, 4.12), with J = 2/5 m r^2; then x^{n+1} = x^n
+/// + v dt (4.10), where a deforming cell carries its particles with it.  `drag` is a mass-proportional damping rate
+/// [1/s] used by packing only.
+void leapfrog(Particles&, Cell&, LeapfrogSteps, double drag, int threads);
 
 }  // namespace densify::dem

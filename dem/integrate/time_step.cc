@@ -34,40 +34,82 @@ double thesis_limit(const Linearisation& l, double m) {
   return std::min(2 / omega * (std::sqrt(1 + xi * xi) - xi), l.viscosity / l.stiffness);
 }
 
+namespace {
+
+/// Sums of the contacts over each particle [N/m, N s/m].
+struct Sums {
+  std::vector<double> stiffness, damping;
+
+  void add(std::uint32_t p, double k, double c) {
+    stiffness[p] += k;
+    damping[p] += c;
+  }
+};
+
+/// Adds the contacts of one bucket; returns the smallest limit of a pair by the thesis's rule, infinite with the other.
+template <class Law>
+double add_bucket(const Law& law, const ContactList& list, const ContactList::Bucket& bucket,
+                  const Particles& particles, const ImageShifts& shifts, const ContactModel& model, double time,
+                  StepRule rule, Sums& sums) {
+  double smallest = infinity;
+  for (std::size_t k = bucket.begin; k < bucket.end; ++k) {
+    const std::uint32_t i = list.i(k), j = list.j(k);
+    const Body &a = particles.body[i], &b = particles.body[j];
+    const double reach = a.radius + b.radius;
+    const double d2 = (b.position - a.position + shifts[list.image(k)]).squaredNorm();
+    bool bound = d2 < reach * reach;
+    if constexpr (has_necks<Law>) bound = bound || list.neck[k].phase != NeckPhase::loose;
+    if (!bound) continue;
+    NormalInput in;
+    in.overlap = std::sqrt(d2) - reach;
+    in.rate = 0;  // enters forces, not stiffness, damper or viscosity
+    in.elastic_radius = elastic_radius(model, a.radius, b.radius);
+    in.sintering_radius = has_necks<Law> ? sintering_radius(model.sintering->radius, a.radius, b.radius) : 0;
+    in.reduced_mass = 1 / (a.inverse_mass + b.inverse_mass);
+    in.step = 0;
+    in.time = time;
+    Linearisation l;
+    if constexpr (has_necks<Law>)
+      l = law.linearise(in, list.neck[k]);
+    else
+      l = law.linearise(in);
+    if (rule == StepRule::thesis) {
+      smallest = std::min(smallest, thesis_limit(l, in.reduced_mass));
+      continue;
+    }
+    const bool dashpot = std::isinf(l.stiffness);  // a viscous contact without spring
+    if (!dashpot) l = with_tangential_share(l, model, in.reduced_mass);
+    const double k_sum = dashpot ? 0.0 : l.stiffness, c_sum = dashpot ? l.viscosity : l.damper;
+    sums.add(i, k_sum, c_sum);
+    sums.add(j, k_sum, c_sum);
+  }
+  return smallest;
+}
+
+}  // namespace
+
 StepLimit critical_step(const Particles& particles, const ContactList& list, const Cell& cell, const PairTable& table,
                         const ContactModel& model, Walls& walls, const PunchNode& punch, PassTime clock,
                         StepRule rule) {
   const std::size_t n = particles.size();
-  std::vector<double> stiffness(n, 0.0), damping(n, 0.0);
-  const std::vector<double> no_growth(table.materials(), 0.0);
+  Sums sums{std::vector<double>(n, 0.0), std::vector<double>(n, 0.0)};
+  const ImageShifts shifts(cell);
   double smallest_pair = infinity;
-
-  for (const auto& bucket : list.buckets)
-    with_spring(model, table.row(bucket.material_a, bucket.material_b), [&](const auto& spring) {
+  for (const auto& bucket : list.buckets) {
+    const PairProperties& row = table.row(bucket.material_a, bucket.material_b);
+    auto add = [&](const auto& law) {
+      smallest_pair =
+          std::min(smallest_pair, add_bucket(law, list, bucket, particles, shifts, model, clock.time, rule, sums));
+    };
+    with_spring(model, row, [&](const auto& spring) {
       using Spring = std::decay_t<decltype(spring)>;
-      const KelvinVoigt<Spring> loose{spring, model.damping_ratio};
-      for (std::size_t k = bucket.begin; k < bucket.end; ++k) {
-        const NormalInput in = normal_input(model, particles, list, cell, no_growth, clock, k);
-        Linearisation l;
-        if (list.neck.empty())
-          l = loose.linearise(in);
-        else
-          l = make_sintering<Spring>(model, table.row(bucket.material_a, bucket.material_b))
-                  .linearise(in, list.neck[k]);
-        if (rule == StepRule::thesis) {
-          smallest_pair = std::min(smallest_pair, thesis_limit(l, in.reduced_mass));
-          continue;
-        }
-        const bool dashpot = std::isinf(l.stiffness);  // a viscous contact without spring
-        if (!dashpot) l = with_tangential_share(l, model, in.reduced_mass);
-        const double k_sum = dashpot ? 0.0 : l.stiffness, c_sum = dashpot ? l.viscosity : l.damper;
-        for (std::uint32_t p : {list.i(k), list.j(k)}) {
-          stiffness[p] += k_sum;
-          damping[p] += c_sum;
-        }
-      }
+      if (list.neck.empty())
+        add(KelvinVoigt<Spring>{spring, model.damping_ratio});
+      else
+        add(make_sintering<Spring>(model, row));
     });
-  walls.add_stiffness(particles, table, model, stiffness, damping);
+  }
+  walls.add_stiffness(particles, table, model, sums.stiffness, sums.damping);
 
   StepLimit limit;
   limit.critical = infinity;
@@ -77,7 +119,8 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
     const PairProperties& like = table.row(particles.material[p], particles.material[p]);
     const double mass = 1 / b.inverse_mass;
     const Linearisation light = with_tangential_share(light_contact(model, like, b.radius, mass), model, 0.5 * mass);
-    const double own = node_limit(mass, std::max(light.stiffness, stiffness[p]), std::max(light.damper, damping[p]));
+    const double own =
+        node_limit(mass, std::max(light.stiffness, sums.stiffness[p]), std::max(light.damper, sums.damping[p]));
     if (own < limit.critical) limit = {own, std::uint32_t(p), 0};
   }
   if (rule == StepRule::thesis) limit.critical = std::min(smallest_pair, limit.critical);

@@ -13,6 +13,7 @@ namespace densify::dem {
 namespace {
 
 constexpr std::size_t header_size = 512;  // the smallest that HDF5 skips
+constexpr const char* damaged = "the checkpoint is not readable (truncated or damaged)";
 constexpr std::string_view magic = "Densify checkpoint, format ";
 
 /// FNV-1a with 64 bits; every step is a bijection, so that no single changed byte goes unseen.
@@ -58,21 +59,38 @@ void write_checkpoint(const std::filesystem::path& path, const Simulation& simul
   write_atomically(path, {header_of(image, checkpoint_format), image}, Durability::power_loss);
 }
 
-RunPosition read_checkpoint(const std::filesystem::path& path, Simulation& simulation, const CheckpointOwner& owner) {
+namespace {
+
+/// The bytes of a checkpoint of this format, checked against its header.
+std::string checked_bytes(const std::filesystem::path& path, const CheckpointOwner& owner) {
   if (!std::filesystem::exists(path)) refuse(path, "there is no checkpoint to resume from");
-  const std::string bytes = read_whole_file(path);
-  const std::string damaged = "the checkpoint is not readable (truncated or damaged)";
+  std::string bytes = read_whole_file(path);
   const std::string_view image = std::string_view(bytes).substr(std::min(bytes.size(), header_size));
   const int format = format_of(bytes);
   if (format == 0 || bytes.compare(0, header_size, header_of(image, format)) != 0) refuse(path, damaged);
   if (format != checkpoint_format)
     refuse(path, "the checkpoint has format " + std::to_string(format) + " and this version of Densify (" +
                      owner.version + ") reads format " + std::to_string(checkpoint_format));
+  return bytes;
+}
 
+void require_owner(const std::filesystem::path& path, const Hdf5Reader& file, const CheckpointOwner& owner) {
+  if (file.attribute<std::string>("/", "scene") != owner.scene)
+    refuse(path, "the checkpoint belongs to another scene (or to this one before it was changed)");
+}
+
+}  // namespace
+
+void require_checkpoint(const std::filesystem::path& path, const CheckpointOwner& owner) {
+  const std::string bytes = checked_bytes(path, owner);
+  require_owner(path, Hdf5Reader(path, std::string_view(bytes).substr(header_size)), owner);
+}
+
+RunPosition read_checkpoint(const std::filesystem::path& path, Simulation& simulation, const CheckpointOwner& owner) {
+  const std::string bytes = checked_bytes(path, owner);
   try {
-    const Hdf5Reader file(path, image);
-    if (file.attribute<std::string>("/", "scene") != owner.scene)
-      refuse(path, "the checkpoint belongs to another scene (or to this one before it was changed)");
+    const Hdf5Reader file(path, std::string_view(bytes).substr(header_size));
+    require_owner(path, file, owner);
     RunPosition position;
     const auto counts = file.read<std::uint64_t>("/run/counts");
     if (counts.size() != 3) refuse(path, damaged);

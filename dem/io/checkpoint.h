@@ -27,4 +27,7 @@ void write_checkpoint(const std::filesystem::path&, const Simulation&, const Run
 /// cannot be read at all.
 RunPosition read_checkpoint(const std::filesystem::path&, Simulation& to_restore, const CheckpointOwner&);
 
+/// Throws what read_checkpoint would have against the file itself, before there is a simulation to restore.
+void require_checkpoint(const std::filesystem::path&, const CheckpointOwner&);
+
 }  // namespace densify::dem

@@ -31,10 +31,20 @@ Scene read(SceneDocument document) {
   document.reject_unknown();
   check_scene(scene, places);
   scene.effective_text = document.effective_text();
+  if (places.packing)
+    scene.places.emplace_back("specimen.packing.green_density", places.packing->where("green_density"));
+  if (places.import) scene.places.emplace_back("specimen.import.file", places.import->where("file"));
+  if (places.integration) scene.places.emplace_back("integration.fixed_step", places.integration->where("fixed_step"));
   return scene;
 }
 
 }  // namespace
+
+std::string Scene::placed(const std::string& message) const {
+  for (const auto& [key, place] : places)
+    if (message.starts_with(key + ":")) return place + message.substr(key.size());
+  return message;
+}
 
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
   const auto file = std::filesystem::is_directory(path) ? path / "scene.toml" : path;

@@ -65,6 +65,11 @@ struct Scene {
 
   std::filesystem::path file;  ///< where it was read, empty for text
   std::string effective_text;  ///< TOML with every key in use; reads back to the same scene
+
+  /// Keys that only packing and the first step can find at fault, each with its "file:line: key".
+  std::vector<std::pair<std::string, std::string>> places;
+  /// The message with the place in front when it begins with such a key.
+  std::string placed(const std::string& message) const;
 };
 
 /// Reads and checks a scene (a file, or a folder that holds scene.toml); overrides are "path.to.key=value".

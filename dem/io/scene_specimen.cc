@@ -150,14 +150,18 @@ void read_specimen(Section& root, Scene& scene, ScenePlaces& places) {
       section.integer("seed", seed, 0, largest_seed, Need::optional,
                       "of the order in which sizes and materials are mixed");
       if (scene.powder) scene.powder->seed = seed;
-      section.section("packing", Need::defaulted, "how a powder becomes a green body (App. C)",
-                      [&](Section& below) { read_packing(below, scene.packing.emplace(), container.shape); });
+      section.section("packing", Need::defaulted, "how a powder becomes a green body (App. C)", [&](Section& below) {
+        places.packing = below;
+        read_packing(below, scene.packing.emplace(), container.shape);
+      });
     } else {
       refuse_keys(section, {"packing", "seed"}, "belongs to a [[powder]]; imported particles stay where they are");
       if (scene.powder) section.fail("import", "there is a [[powder]] already; give either a powder or an import");
     }
-    section.section("import", Need::optional, "particles from a file instead of a [[powder]]",
-                    [&](Section& below) { read_import(below, scene.import.emplace(), scene); });
+    section.section("import", Need::optional, "particles from a file instead of a [[powder]]", [&](Section& below) {
+      places.import = below;
+      read_import(below, scene.import.emplace(), scene);
+    });
     read_size(section, container, powder);
     section.section("cell", Need::optional, "the periodic cell", [&](Section& below) {
       places.cell = below;

@@ -155,7 +155,7 @@ ContactList read_contacts(const Hdf5Reader& file, const Particles& particles, co
   const auto since = read_list<double>(file, "/contacts/neck_since", necks);
   const auto phase = read_list<std::uint8_t>(file, "/contacts/neck_phase", necks);
   for (std::size_t k = 0; k < necks; ++k) {
-    require(phase[k] <= std::uint8_t(NeckPhase::dormant), "/contacts/neck_phase");
+    require(phase[k] <= std::uint8_t(NeckPhase::reactivating), "/contacts/neck_phase");
     list.neck.push_back({radius[k], elastic[k], since[k], NeckPhase(phase[k])});
   }
   list.reference_position = read_vectors(file, "/contacts/reference_position", n);

@@ -7,7 +7,7 @@ namespace densify::dem {
 /// One contact at one step.  Signs: n points from i to j; displacement and rate negative when the pair approaches.
 struct NormalInput {
   double overlap;           ///< u = |x_j - x_i| - r_i - r_j (4.16), negative in contact [m]
-  double rate;              ///< du/dt = v_rn - d(r_i + r_j)/dt, thermal growth of the radii taken out [m/s]
+  double rate;              ///< v_rn less thermal growth: of r_i + r_j, or of the distance itself through a neck [m/s]
   double elastic_radius;    ///< radius of the Hertz stiffness [m]
   double sintering_radius;  ///< radius of neck, sintering force and a_max (4.33) [m]
   double reduced_mass;      ///< m_i m_j / (m_i + m_j), scaled masses [kg]

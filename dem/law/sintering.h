@@ -19,7 +19,8 @@ enum class NeckPhase : std::uint8_t {
   arriving,      ///< a = a_max reached: eta to eta_inf, F_sint to 0 (4.51, 4.52)
   bonded,        ///< at equilibrium for good: elastic bond
   deactivating,  ///< cooled below activation: the same fading
-  dormant        ///< cold neck short of equilibrium: elastic bond that can be activated again
+  dormant,       ///< cold neck short of equilibrium: elastic bond that can be activated again
+  reactivating   ///< as activating, but of a neck: no friction is left to fade
 };
 
 /// History of one neck.
@@ -54,6 +55,7 @@ struct SinteringContact {
   double activity(const NeckHistory& h, double time) const {
     switch (h.phase) {
       case NeckPhase::activating:
+      case NeckPhase::reactivating:
         return cosine_step(progress(h, time));
       case NeckPhase::sintering:
         return 1;
@@ -127,7 +129,7 @@ struct SinteringContact {
   /// True while the neck grows and flows.
   static bool flows(NeckPhase p) {
     return p == NeckPhase::activating || p == NeckPhase::sintering || p == NeckPhase::arriving ||
-           p == NeckPhase::deactivating;
+           p == NeckPhase::deactivating || p == NeckPhase::reactivating;
   }
 
  private:
@@ -190,6 +192,7 @@ struct SinteringContact {
     }
     switch (h.phase) {
       case NeckPhase::activating:
+      case NeckPhase::reactivating:
         if (!active)
           enter(h, NeckPhase::deactivating, time, 1 - done);
         else if (done >= 1)
@@ -200,12 +203,12 @@ struct SinteringContact {
         break;
       case NeckPhase::deactivating:
         if (active)
-          enter(h, NeckPhase::activating, time, 1 - done);
+          enter(h, NeckPhase::reactivating, time, 1 - done);
         else if (done >= 1)
           h.phase = NeckPhase::dormant;
         break;
       case NeckPhase::dormant:
-        if (active) enter(h, NeckPhase::activating, time, 0);
+        if (active) enter(h, NeckPhase::reactivating, time, 0);
         break;
       case NeckPhase::arriving:
         if (done >= 1) h.phase = NeckPhase::bonded;
@@ -222,7 +225,8 @@ struct SinteringContact {
   void reach_equilibrium(const NormalInput& in, NeckHistory& h) const {
     if (h.phase == NeckPhase::arriving) return;
     if (settings.model == SinteringModel::viscous) bond_takes_over(in, h, 0);  // F_sint fades on its own
-    const double done = h.phase == NeckPhase::activating     ? 1 - progress(h, in.time)
+    const bool rising = h.phase == NeckPhase::activating || h.phase == NeckPhase::reactivating;
+    const double done = rising                               ? 1 - progress(h, in.time)
                         : h.phase == NeckPhase::deactivating ? progress(h, in.time)
                                                              : 0.0;
     enter(h, NeckPhase::arriving, in.time, done);

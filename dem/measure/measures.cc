@@ -36,19 +36,13 @@ void measure_walls(const Simulation& sim, Measures& m) {
     if (wall.shape == WallShape::cylinder) {
       lateral_force += normal[w];
       lateral_area += 2 * M_PI * wall.radius * size[2];
-      const double area = M_PI * wall.radius * wall.radius;
-      m.punch_pressure = normal[*sim.wall("punch")] / area;
-      m.bottom_pressure = normal[*sim.wall("bottom")] / area;
     } else if (std::abs(wall.normal[2]) < 0.5) {
       lateral_force += normal[w];
       lateral_area += (std::abs(wall.normal[0]) > 0.5 ? size[1] : size[0]) * size[2];
     }
   }
-  if (sim.setup().container.shape == ContainerShape::box) {
-    const double area = sim.setup().container.size[0] * sim.setup().container.size[1];
-    m.punch_pressure = normal[*sim.wall("punch")] / area;
-    m.bottom_pressure = normal[*sim.wall("bottom")] / area;
-  }
+  m.punch_pressure = normal[*sim.wall("punch")] / sim.punch_area();
+  m.bottom_pressure = normal[*sim.wall("bottom")] / sim.punch_area();
   if (lateral_area > 0) m.lateral_pressure = lateral_force / lateral_area;
 }
 

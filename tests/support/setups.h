@@ -180,6 +180,15 @@ inline double kinetic_energy(const Particles& p) {
   return sum;
 }
 
+/// Root of the summed squared distances from the mean centre [m].
+inline double gyration(const Particles& p) {
+  Vec3 mean = Vec3::Zero();
+  for (const auto& b : p.body) mean += b.position / double(p.size());
+  double sum = 0;
+  for (const auto& b : p.body) sum += (b.position - mean).squaredNorm();
+  return std::sqrt(sum);
+}
+
 inline double elastic_energy(const dem::Recording& record) {
   double sum = 0;
   for (const auto& c : record.contact) sum += c.elastic_energy;

@@ -1,0 +1,22 @@
+#pragma once
+// `densify bench`: how fast the contact pass is on the packings of examples/benchmark, and whether it is right.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace densify::app {
+
+struct BenchOptions {
+  std::vector<std::string> packings;  ///< m2k, m20k, p1751; none given: all three
+  std::vector<std::string> cases;     ///< A, B, S; none given: A and B
+  int threads = 1;
+  std::uint64_t steps = 0;  ///< steps of one repeat; 0: as many as take about half a second
+  bool json = false;        ///< one JSON object (an array of them for several jobs) instead of a table
+};
+
+/// Runs every packing with every case and prints a line each; returns the exit code, 3 when the forces of a pass differ
+/// from those of a plain double loop.  Throws InputError for an unknown name, FileError when the packings are missing.
+int bench_command(const BenchOptions&);
+
+}  // namespace densify::app

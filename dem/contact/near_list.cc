@@ -1,0 +1,65 @@
+#include "dem/contact/near_list.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace densify::dem {
+
+namespace {
+
+// Of the list's skin.  Smaller: fewer pairs in a pass, more prunings (half a pass each); flat between 0.1 and 0.4.
+constexpr double share_of_skin = 0.25;
+
+}  // namespace
+
+void NearList::take_all(const ContactList& list) {
+  content_ = Content::all;
+  pairs_.resize(list.size());
+  for (std::size_t k = 0; k < list.size(); ++k) pairs_[k] = {list.first[k], list.second[k], std::uint32_t(k)};
+  bucket_end_.clear();
+  for (const auto& bucket : list.buckets) bucket_end_.push_back(bucket.end);
+}
+
+void NearList::prune(ContactList& list, const Particles& particles, const Cell& cell,
+                     const std::vector<double>& expansion) {
+  content_ = Content::pruned;
+  skin_ = share_of_skin * list.skin;
+  const ImageShifts shifts(cell);
+  const Body* const body = particles.body.data();
+  pairs_.resize(list.size());
+  bucket_end_.clear();
+  std::size_t count = 0;
+  for (const auto& bucket : list.buckets) {
+    for (std::size_t k = bucket.begin; k < bucket.end; ++k) {
+      const Body &a = body[list.i(k)], &b = body[list.j(k)];
+      const double reach = a.radius + b.radius + skin_;
+      bool near = (b.position - a.position + shifts[list.image(k)]).squaredNorm() < reach * reach;
+      if (!list.neck.empty()) near = near || list.neck[k].phase != NeckPhase::loose;
+      pairs_[count] = {list.first[k], list.second[k], std::uint32_t(k)};
+      count += near;
+      if (!near && !list.tangential.empty()) list.tangential[k].setZero();
+    }
+    bucket_end_.push_back(count);
+  }
+  pairs_.resize(count);
+
+  reference_position_.resize(particles.size());
+  for (std::size_t p = 0; p < particles.size(); ++p) reference_position_[p] = body[p].position;
+  reference_h_ = cell.h;
+  reference_expansion_ = expansion;
+  largest_radius_ = list.largest_radius;
+}
+
+double NearList::travel(const Particles& particles, const Cell& cell, const std::vector<double>& expansion,
+                        int threads) const {
+  if (content_ != Content::pruned) return std::numeric_limits<double>::infinity();
+  const ListMoment pruned{reference_position_, reference_h_, reference_expansion_, largest_radius_, skin_};
+  return approach(pruned, particles, cell, expansion, threads);
+}
+
+std::size_t NearList::bytes() const {
+  return pairs_.capacity() * sizeof(NearPair) + bucket_end_.capacity() * sizeof(std::size_t) +
+         reference_position_.capacity() * sizeof(Vec3) + reference_expansion_.capacity() * sizeof(double);
+}
+
+}  // namespace densify::dem

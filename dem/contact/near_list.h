@@ -1,0 +1,72 @@
+#pragma once
+// The pairs of the contact list that may touch in the next few steps: a list pruned from the list.  Which pairs these
+// are never changes a result, only its cost, so that no checkpoint holds them.
+
+#include <array>
+
+#include "dem/contact/contact_list.h"
+
+namespace densify::dem {
+
+/// A pair as the contact pass reads it.
+struct NearPair {
+  std::uint32_t first;   ///< i
+  std::uint32_t second;  ///< j | image code << 27
+  std::uint32_t place;   ///< in the contact list
+
+  std::uint32_t i() const { return first; }
+  std::uint32_t j() const { return second & ContactList::index_mask; }
+  std::uint8_t image() const { return std::uint8_t(second >> ContactList::index_bits); }
+};
+
+/// The translations h n of the 27 image codes [m]; zero in a cell that is not periodic.
+class ImageShifts {
+ public:
+  explicit ImageShifts(const Cell& cell) {
+    for (std::uint8_t code = 0; code < shift_.size(); ++code)
+      shift_[code] = cell.periodic ? cell.shift(code) : Vec3(Vec3::Zero());
+  }
+  const Vec3& operator[](std::uint8_t code) const { return shift_[code]; }
+
+ private:
+  std::array<Vec3, 27> shift_;
+};
+
+class NearList {
+ public:
+  /// Forgets everything, after the contact list has changed.
+  void clear() { content_ = Content::nothing; }
+  bool empty() const { return content_ == Content::nothing; }
+
+  /// All pairs of the list, good for as long as the list is.
+  void take_all(const ContactList&);
+
+  /// The pairs that are closer than touching + skin() and those with a neck, in the order of the list.  A pair left out
+  /// loses its friction spring, as every pair does that does not touch.
+  void prune(ContactList&, const Particles&, const Cell&, const std::vector<double>& expansion);
+
+  /// How far the surfaces of two particles can have approached since prune(): to be pruned again at skin().  Infinite
+  /// when there was none since clear(), NaN when a position is not finite. [m]
+  double travel(const Particles&, const Cell&, const std::vector<double>& expansion, int threads) const;
+  double skin() const { return skin_; }  ///< [m]
+
+  /// Pairs of the list's buckets one after another; bucket b ends at bucket_end()[b].
+  const std::vector<NearPair>& pairs() const { return pairs_; }
+  const std::vector<std::size_t>& bucket_end() const { return bucket_end_; }
+
+  std::size_t bytes() const;
+
+ private:
+  enum class Content : std::uint8_t { nothing, all, pruned };
+
+  Content content_ = Content::nothing;
+  std::vector<NearPair> pairs_;
+  std::vector<std::size_t> bucket_end_;
+  // When it was pruned:
+  std::vector<Vec3> reference_position_;
+  Mat3 reference_h_ = Mat3::Zero();
+  std::vector<double> reference_expansion_;
+  double largest_radius_ = 0, skin_ = 0;
+};
+
+}  // namespace densify::dem
