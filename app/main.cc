@@ -55,17 +55,6 @@ int run_main(int argc, char** argv) {
   bench_command->add_option("--steps", bench.steps, "Steps of one repeat; without it as many as take half a second");
   bench_command->add_flag("--json", bench.json, "JSON instead of a table");
 
-  densify::app::BenchOptions bench;
-  CLI::App* bench_command = app.add_subcommand("bench", "Measure the speed on standard packings");
-  bench_command->add_option("--packing", bench.packings, "m2k, m20k or p1751; without it all three")
-      ->check(CLI::IsMember({"m2k", "m20k", "p1751"}));
-  bench_command
-      ->add_option("--case", bench.cases, "A frictionless, B friction and rotation, S sintering; without it A and B")
-      ->check(CLI::IsMember({"A", "B", "S"}));
-  bench_command->add_option("--threads", bench.threads, "Threads")->check(CLI::Range(1, 1024));
-  bench_command->add_option("--steps", bench.steps, "Steps of one repeat; without it about half a second");
-  bench_command->add_flag("--json", bench.json, "JSON instead of a table");
-
   CLI::App* scene_command =
       app.add_subcommand("help-scene", "Every key of a scene with unit, range, default and meaning");
   CLI::App* help_command = app.add_subcommand("help", "This text");
@@ -84,7 +73,6 @@ int run_main(int argc, char** argv) {
   }
   if (run_command->parsed()) return densify::app::run_command(run);
   if (check_command->parsed()) return densify::app::check_command(check);
-  if (bench_command->parsed()) return densify::app::bench_command(bench);
   if (bench_command->parsed()) return densify::app::bench_command(bench);
   if (scene_command->parsed()) std::fputs(densify::dem::scene_help().c_str(), stdout);
   if (help_command->parsed()) std::fputs(app.help().c_str(), stdout);
