@@ -184,7 +184,6 @@ void Run::prepare() {
   next_snapshot_ = next_multiple(snapshot_interval_, last_snapshot_);
   results_.emplace(options_.folder, description, position_.snapshots);
   if (scene_.output.visualisation) pictures_.emplace(paths_.pictures, position_.snapshots);
-  if (options_.mode == Continue::fresh) write_checkpoint_now();  // from here on a kill leaves something to resume
   start_time_ = sim_->state().time;
   start_steps_ = sim_->state().steps;
   start_wall_ = last_checkpoint_ = clock_.seconds();
@@ -280,8 +279,9 @@ void Run::loop() {
       }
       if (scene_.integration.fixed_step > state.critical_step && state.critical_step > 0)
         throw RunError("integration.fixed_step of " + text("%.4g s", scene_.integration.fixed_step) +
-                       " has come above the stability limit of " + text("%.4g s", state.critical_step) +
-                       " at process time " + text("%.6g s", state.time) + "; use a smaller one, or leave it out");
+                       " has come above the stability limit of " + text("%.4g s", state.critical_step) + " (particle " +
+                       std::to_string(state.particles.id[sim_->step_limit().particle]) +
+                       "); use a smaller one, or leave it out");
       if (clock_.seconds() - last_checkpoint_ > scene_.output.checkpoint_interval) write_checkpoint_now();
       if (clock_.seconds() - last_progress_ > 0.25) report_progress();
     }

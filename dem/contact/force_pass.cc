@@ -71,7 +71,7 @@ struct Bucket {
   NeckHistory* neck;
   Mat3 velocity_gradient;
   bool deforming;
-  double growth_a, growth_b;  // relative growth of the radii of both materials since the last pass
+  double growth_a, growth_b;  // relative growth rate of the radii of both materials since the last pass [1/s]
   std::uint8_t material_a;
   PassTime clock;
 
@@ -155,12 +155,11 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
     double u = in.overlap;
     bool springs = true;  // a viscous contact has no spring to store energy in
     if constexpr (has_necks<Law>) {
-      const auto& h = c.neck[pair.place];
-      if (h.phase != NeckPhase::loose) {
+      if (const auto& h = c.neck[pair.place]; h.phase != NeckPhase::loose) {
         u = h.elastic;
         springs = c.law.settings.model != SinteringModel::viscous || !Law::flows(h.phase);
-      } else {
-        springs = in.overlap < 0;  // otherwise the neck was lost in this very step
+      } else if (in.overlap >= 0) {
+        springs = false;  // the neck was lost in this very step
       }
     }
     if (springs) {
@@ -254,6 +253,7 @@ void ForcePass::run_bucket(const Law& law, std::size_t number, Particles& partic
                            const Cell& cell, const std::vector<double>& expansion_step, PassTime clock,
                            std::vector<ContactRecord>* record) {
   const auto& named = list.buckets[number];
+  auto growth = [&](std::uint8_t m) { return clock.step > 0 ? expansion_step[m] / clock.step : 0.0; };
   const Bucket<Law> bucket{law,
                            model_.friction.value_or(FrictionModel{}),
                            model_.hertz_radius,
@@ -266,8 +266,8 @@ void ForcePass::run_bucket(const Law& law, std::size_t number, Particles& partic
                            list.neck.data(),
                            cell.velocity_gradient,
                            cell.periodic && !cell.velocity_gradient.isZero(0),
-                           expansion_step[named.material_a],
-                           expansion_step[named.material_b],
+                           growth(named.material_a),
+                           growth(named.material_b),
                            named.material_a,
                            clock};
   const std::size_t first = number == 0 ? 0 : near_.bucket_end()[number - 1];

@@ -102,15 +102,16 @@ struct SinteringContact {
 
     const double before = h.elastic;
     const double k = loose.spring.tangent(before, in.elastic_radius);
-    const double mobility = 1 / series_viscosity(h.phase, neck, share);
+    const double mobility = h.phase == NeckPhase::sintering ? mobility_factor / (neck * neck * neck * neck)
+                                                            : 1 / series_viscosity(h.phase, neck, share);
     // Theta rule for du_e/dt = rate - F(u_e)/eta, one Newton step: theta 1 backward Euler (L-stable), 1/2 (4.67).
     const double theta = settings.update == MaxwellUpdate::trapezoidal ? 0.5 : 1.0;
-    const double change = in.step * (in.rate - mobility * loose.spring.force(before, in.elastic_radius)) /
-                          (1 + theta * in.step * mobility * k);
-    h.elastic = before + change;
+    const double elastic_rate = (in.rate - mobility * loose.spring.force(before, in.elastic_radius)) /
+                                (1 + theta * in.step * mobility * k);
+    h.elastic = before + in.step * elastic_rate;
     double f = loose.spring.force(h.elastic, in.elastic_radius);
     // The damper sees the elastic part of the rate only: it stills vibration and adds no viscosity to the flow.
-    if (settings.damping_ratio > 0 && in.step > 0) f += damper(in, k) * (change / in.step);
+    if (settings.damping_ratio > 0 && in.step > 0) f += damper(in, k) * elastic_rate;
     return {f + f_sint, f_sint};
   }
 
@@ -183,7 +184,8 @@ struct SinteringContact {
   }
 
   void change_phase(const NormalInput& in, NeckHistory& h) const {
-    const double time = in.time, done = progress(h, time);
+    const double time = in.time;
+    const auto done = [&] { return progress(h, time); };  // a division that most contacts do not need
     if (settings.model == SinteringModel::viscous && (active ? h.phase == NeckPhase::dormant : flows(h.phase))) {
       // A dashpot has no elastic state to fade from: the bond carries its force and the sintering force that ends here.
       if (!active) bond_takes_over(in, h, sintering_force(h.radius, in.sintering_radius));
@@ -194,8 +196,8 @@ struct SinteringContact {
       case NeckPhase::activating:
       case NeckPhase::reactivating:
         if (!active)
-          enter(h, NeckPhase::deactivating, time, 1 - done);
-        else if (done >= 1)
+          enter(h, NeckPhase::deactivating, time, 1 - done());
+        else if (done() >= 1)
           h.phase = NeckPhase::sintering;
         break;
       case NeckPhase::sintering:
@@ -203,15 +205,15 @@ struct SinteringContact {
         break;
       case NeckPhase::deactivating:
         if (active)
-          enter(h, NeckPhase::reactivating, time, 1 - done);
-        else if (done >= 1)
+          enter(h, NeckPhase::reactivating, time, 1 - done());
+        else if (done() >= 1)
           h.phase = NeckPhase::dormant;
         break;
       case NeckPhase::dormant:
         if (active) enter(h, NeckPhase::reactivating, time, 0);
         break;
       case NeckPhase::arriving:
-        if (done >= 1) h.phase = NeckPhase::bonded;
+        if (done() >= 1) h.phase = NeckPhase::bonded;
         break;
       default:
         break;
