@@ -129,10 +129,11 @@ def print_cost():
 
 
 def print_strains():
-    print("\n| time [s] | closed form | viscoelastic 1e14 | viscoelastic 1e16 | viscous 1e16 |")
-    print("|---|---|---|---|---|")
     for force, runs, times in ((0.0, ("viscoelastic_1e14", "viscoelastic_1e16", "viscous_1e16"), (1e3, 1e4, 1e5, 1e6)),
                                (0.01, ("pressed_1e14", "pressed_1e16"), (1e3, 1e4, 1e5))):
+        title = "strain under 0.01 N at [s]" if force else "strain, free, at [s]"
+        print(f"\n| {title} | closed form | " + " | ".join(name.replace("_", " ") for name in runs) + " |")
+        print("|---" * (len(runs) + 2) + "|")
         for time in times:
             exact = strain_at(time, force)
             cells = [f"{exact:.8f}"]
@@ -142,7 +143,7 @@ def print_strains():
                     continue
                 measured = strain_of_run(name, time)
                 cells.append(f"{measured:.8f} ({measured / exact - 1:+.1e})")
-            print(f"| {time:.0e}{', 0.01 N' if force else ''} | " + " | ".join(cells) + " |")
+            print(f"| {time:.0e} | " + " | ".join(cells) + " |")
     print("\n| run | end time [s] | closed form [s] | deviation |")
     print("|---|---|---|---|")
     for name in ("viscoelastic_1e14", "viscoelastic_1e16", "viscoelastic_1e14_thesis_rule",
@@ -150,7 +151,7 @@ def print_strains():
         end = PRESSED_END if name.startswith("pressed") else FREE_END
         time = run(name)["time"]
         if time > 0.99 * end:
-            print(f"| {name} | {time:.9g} | {end:.9g} | {time / end - 1:+.1e} |")
+            print(f"| {name.replace('_', ' ')} | {time:.9g} | {end:.9g} | {time / end - 1:+.1e} |")
 
 
 def save(figure, name):
