@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Hot press NiAl powder by processes I and II with both readings of the sintering contact, and compare with measurement.
+"""Hot press NiAl powder by processes I and II with both readings of the sintering contact, beside measured densities.
 
     compare.py [--again] [--arrangements N]
 
-Runs the four cases with ./densify into results/hot_press_nial/CASE, unless their results are there from an earlier call,
-prints the tables of README.md and draws shrinkage.png and rate.png of thesis Figs 5.25 and 5.30.  With --arrangements
+Runs the four cases with ./densify into results/hot_press_nial/CASE, unless their results are there from an earlier
+call, prints the tables of README.md and draws shrinkage.png and rate.png (thesis Figs 5.25, 5.30).  With --arrangements
 also process I to the end of the hold for N arrangements of the particles at mass factor 1e18, for mean and scatter.
 Needs numpy, h5py and matplotlib.
 """
@@ -81,12 +81,13 @@ def print_densities(cases):
 
 def print_state(cases):
     print("\n| case | coordination at 1 / 5 | necks at equilibrium at 5 / end | largest overlap at 5 [r] "
-          "| punch pressure / applied, points 1 to 5 | cooling |")
+          "| punch pressure / applied, heating and hold | cooling |")
     print("|---" * 6 + "|")
     for name, case in cases.items():
         z, eq = case.at_ends("coordination_number"), case.at_ends("neck_equilibrium_fraction")
         print(f"| {name} | {z[1]:.2f} / {z[5]:.2f} | {100 * eq[5]:.0f} % / {100 * eq[-1]:.0f} % "
-              f"| {case.at_ends('largest_overlap')[5]:.2f} | {case.punch_mean(1, 5):.4f} | {case.punch_mean(6, 6):.4f} |")
+              f"| {case.at_ends('largest_overlap')[5]:.2f} | {case.punch_mean(1, 5):.4f} "
+              f"| {case.punch_mean(6, 6):.4f} |")
 
 
 def print_cost(cases):
@@ -123,9 +124,9 @@ def draw_shrinkage(case):
     """Thesis Fig. 5.25."""
     figure, axis = plt.subplots(figsize=(7, 4.2), constrained_layout=True)
     minutes = case.history["time_s"] / 60
-    for column, label, style in (("shrinkage_x", "x", "C0-"), ("shrinkage_y", "y", "C1--"), ("shrinkage_z", "z", "C2-"),
-                                 ("shrinkage_volume", "volume", "k-")):
-        axis.plot(minutes, case.history[column], style, label=f"$\\phi_{{{label if len(label) == 1 else 'V'}}}$ {label}")
+    for column, label, style in (("shrinkage_x", "$\\phi_x$", "C0-"), ("shrinkage_y", "$\\phi_y$", "C1--"),
+                                 ("shrinkage_z", "$\\phi_z$", "C2-"), ("shrinkage_volume", "$\\phi_V$", "k-")):
+        axis.plot(minutes, case.history[column], style, label=label)
     axis.set_xlabel("time [min]")
     axis.set_ylabel("present over initial size")
     axis.grid(alpha=0.3)

@@ -204,7 +204,8 @@ def draw_steps():
         mass = MASS * float(factor)
         eta = math.pi * LARGEST_NECK**4 / (8 * DIFFUSION)
         axis.axhline(mass / eta, color="C1", linestyle=":", linewidth=1)
-        axis.text(1.5e4, mass / eta / 1.7, f"viscous at the end: {mass / eta:.3g} s", color="C1", fontsize=8, ha="right")
+        axis.text(1.5e4, mass / eta / 1.7, f"viscous at the end: {mass / eta:.3g} s", color="C1", fontsize=8,
+                  ha="right")
         limit = math.sqrt(2 * mass / STIFFNESS)
         axis.text(0.02, limit * 1.2, f"$2/\\omega$ = {limit:.4g} s", color="C0", fontsize=8)
         axis.set_title(f"mass factor {factor}")
