@@ -78,6 +78,10 @@ dem::Setup bench_setup(const BenchJob& job, const std::filesystem::path& packing
   setup.cell = imported.box.value();
   setup.container.shape = ContainerShape::periodic;
   reject_overlaps(imported, setup.cell, largest_overlap);
+  setup.particles.body.reserve(imported.size());
+  setup.particles.reference_radius.reserve(imported.size());
+  setup.particles.material.reserve(imported.size());
+  setup.particles.id.reserve(imported.size());
   for (std::size_t p = 0; p < imported.size(); ++p) {
     setup.particles.body.push_back({setup.cell.wrap(imported.position[p]), imported.radius[p], Vec3::Zero(), 1});
     setup.particles.reference_radius.push_back(imported.radius[p]);

@@ -211,6 +211,7 @@ void Simulation::rebuild_lists() {
   const HistoryNeeds needs{setup_.contact.friction.has_value(),
                            setup_.contact.sintering && (table_.any_active() || !state_.contacts.neck.empty())};
   try {
+    pass_.near().clear();  // room for the search
     rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs);
   } catch (const InputError& error) {  // a cell that has become too narrow is no mistake of the input any more
     if (state_.steps == 0) throw;
@@ -249,7 +250,7 @@ void Simulation::keep_list_fresh() {
 
 void Simulation::prune_near(double list_age) {
   pass_.near().prune(state_.contacts, state_.particles, state_.cell, state_.expansion);
-  pass_.near_changed(state_.particles.size());
+  pass_.near_changed(state_.contacts, state_.particles.size());
   constexpr double rounding = 1e-9;  // of the sum of two distances
   list_slack_ = (1 - list_age - rounding) * state_.contacts.skin;
 }

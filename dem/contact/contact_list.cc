@@ -17,6 +17,11 @@ Key key_of(std::uint32_t i, std::uint32_t j, std::uint8_t image) {
   return (Key(i) << (ContactList::index_bits + 5)) | (Key(j) << 5) | image;
 }
 
+CandidatePair pair_of(Key key) {
+  return {std::uint32_t(key >> (ContactList::index_bits + 5)), std::uint32_t(key >> 5) & ContactList::index_mask,
+          std::uint8_t(key & 31)};
+}
+
 /// Where the history of a pair was before the rebuild.
 struct Kept {
   Key key;
@@ -64,8 +69,15 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
     throw InputError("powder: more than " + std::to_string(ContactList::index_mask) + " particles are not supported");
   const auto moved = cell.periodic ? wrap_into_cell(particles, cell) : std::vector<Eigen::Vector3i>{};
   const auto kept = kept_histories(list, moved);
+  // From here on the old histories alone are needed; the other arrays are filled anew where they are.
+  const auto old_tangential = std::move(list.tangential);
+  const auto old_neck = std::move(list.neck);
+  list.tangential.clear();
+  list.neck.clear();
+  list.buckets.clear();
 
   std::vector<CandidatePair> pairs;
+  pairs.reserve(list.first.capacity());
   find_pairs(particles.body, cell, list.skin, pairs);
 
   // Necks that have opened beyond the list's reach stay.
@@ -74,8 +86,8 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
   };
   const std::size_t found = pairs.size();
   for (const Kept& old : kept) {
-    if (list.neck.empty() || list.neck[old.place].phase == NeckPhase::loose) continue;
-    const CandidatePair pair{list.i(old.place), list.j(old.place), std::uint8_t(old.key & 31)};
+    if (old_neck.empty() || old_neck[old.place].phase == NeckPhase::loose) continue;
+    const CandidatePair pair = pair_of(old.key);
     if (!std::binary_search(pairs.begin(), pairs.begin() + std::ptrdiff_t(found), pair, less)) pairs.push_back(pair);
   }
   if (pairs.size() > found) std::sort(pairs.begin(), pairs.end(), less);
@@ -91,37 +103,41 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
   for (const auto& p : pairs) ++start[bucket_of(p) + 1];
   for (std::size_t b = 0; b + 1 < start.size(); ++b) start[b + 1] += start[b];
 
-  ContactList fresh;
-  fresh.first.resize(pairs.size());
-  fresh.second.resize(pairs.size());
-  if (needs.friction) fresh.tangential.assign(pairs.size(), Vec3::Zero());
-  if (needs.necks) fresh.neck.assign(pairs.size(), NeckHistory{});
+  if (list.first.capacity() < pairs.size()) {  // a vector that grows by itself takes up to twice what it needs
+    std::vector<std::uint32_t>().swap(list.first);
+    std::vector<std::uint32_t>().swap(list.second);
+    list.first.reserve(pairs.size() + pairs.size() / 16);
+    list.second.reserve(list.first.capacity());
+  }
+  list.first.resize(pairs.size());
+  list.second.resize(pairs.size());
+  if (needs.friction) list.tangential.assign(pairs.size(), Vec3::Zero());
+  if (needs.necks) list.neck.assign(pairs.size(), NeckHistory{});
   for (std::size_t b = 0; b + 1 < start.size(); ++b)
     if (start[b + 1] > start[b])
-      fresh.buckets.push_back({start[b], start[b + 1], std::uint8_t(b / materials), std::uint8_t(b % materials)});
+      list.buckets.push_back({start[b], start[b + 1], std::uint8_t(b / materials), std::uint8_t(b % materials)});
   std::vector<std::size_t> next(start.begin(), start.end() - 1);
   auto old = kept.begin();
   for (const auto& p : pairs) {
     const std::size_t k = next[bucket_of(p)]++;
-    fresh.first[k] = p.i;
-    fresh.second[k] = p.j | std::uint32_t(p.image) << ContactList::index_bits;
+    list.first[k] = p.i;
+    list.second[k] = p.j | std::uint32_t(p.image) << ContactList::index_bits;
     const Key key = key_of(p.i, p.j, p.image);
     while (old != kept.end() && old->key < key) ++old;
     if (old == kept.end() || old->key != key) continue;
-    if (needs.friction && !list.tangential.empty()) fresh.tangential[k] = list.tangential[old->place];
-    if (needs.necks && !list.neck.empty()) fresh.neck[k] = list.neck[old->place];
+    if (needs.friction && !old_tangential.empty()) list.tangential[k] = old_tangential[old->place];
+    if (needs.necks && !old_neck.empty()) list.neck[k] = old_neck[old->place];
   }
 
-  fresh.reference_position.resize(particles.size());
+  list.reference_position.resize(particles.size());
+  list.largest_radius = 0;
   for (std::size_t p = 0; p < particles.size(); ++p) {
-    fresh.reference_position[p] = particles.body[p].position;
-    fresh.largest_radius = std::max(fresh.largest_radius, particles.body[p].radius);
+    list.reference_position[p] = particles.body[p].position;
+    list.largest_radius = std::max(list.largest_radius, particles.body[p].radius);
   }
-  fresh.reference_h = cell.h;
-  fresh.reference_expansion = expansion;
-  fresh.skin = list.skin;
-  fresh.builds = list.builds + 1;
-  list = std::move(fresh);
+  list.reference_h = cell.h;
+  list.reference_expansion = expansion;
+  ++list.builds;
 }
 
 double approach(const ListMoment& then, const Particles& particles, const Cell& cell,

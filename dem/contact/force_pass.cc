@@ -9,20 +9,26 @@ namespace densify::dem {
 
 namespace {
 
+/// A pair as a pass meets it.
+struct Pair {
+  std::size_t near;     // place in the near list
+  std::uint32_t place;  // in the contact list
+  std::uint32_t i, j;
+};
+
 /// Adds to the particles at once, in the order of the list.
 struct DirectSink {
   Vec3 *force, *torque;
   static constexpr bool records = false;
 
-  void skip(std::size_t, const NearPair&) const {}
+  void skip(const Pair&) const {}
   template <bool with_friction>
-  void add(std::size_t, const NearPair& pair, const ContactRecord& c) const {
-    const std::uint32_t i = pair.i(), j = pair.j();
-    force[i] += c.force;
-    force[j] -= c.force;
+  void add(const Pair& pair, const ContactRecord& c) const {
+    force[pair.i] += c.force;
+    force[pair.j] -= c.force;
     if constexpr (with_friction) {
-      torque[i] += c.lever_i * c.couple;
-      torque[j] += c.lever_j * c.couple;
+      torque[pair.i] += c.lever_i * c.couple;
+      torque[pair.j] += c.lever_j * c.couple;
     }
   }
 };
@@ -32,9 +38,9 @@ struct RecordSink {
   ContactRecord* record;  // cleared
   static constexpr bool records = true;
 
-  void skip(std::size_t, const NearPair&) const {}
+  void skip(const Pair&) const {}
   template <bool with_friction>
-  void add(std::size_t, const NearPair& pair, const ContactRecord& c) const {
+  void add(const Pair& pair, const ContactRecord& c) const {
     record[pair.place] = c;
   }
 };
@@ -47,9 +53,9 @@ const auto& spring_of(const Law& law) {
     return law.spring;
 }
 
-/// What heat adds to the distance at which a pair is at rest [m].  Loose spheres meet at their surfaces; through a neck
-/// the body is whole, so that only the way from each centre to the neck's plane grows and a bonded packing expands as
-/// one body, however unequal its overlaps.
+/// What heat adds to the distance at which a pair is at rest [m], from relative growths, or its rate from theirs. Loose
+/// spheres meet at their surfaces; through a neck the body is whole, so that only the way from each centre to the
+/// neck's plane grows and a bonded packing expands as one body, however unequal its overlaps.
 inline double thermal_growth(const Body& a, const Body& b, double overlap, double of_i, double of_j, bool necked) {
   const double cut = necked ? 0.5 * overlap : 0.0;
   return of_i * (a.radius + cut) + of_j * (b.radius + cut);
@@ -62,7 +68,8 @@ struct Bucket {
   Law law;
   FrictionModel friction;
   HertzRadius hertz_radius;
-  const NearPair* pair;
+  const std::uint32_t* near;            // places of the near pairs
+  const std::uint32_t *first, *second;  // of the contact list
   const Body* body;
   const Vec3* angular_velocity;
   const std::uint8_t* material;
@@ -75,28 +82,29 @@ struct Bucket {
   std::uint8_t material_a;
   PassTime clock;
 
-  /// What heat adds to the pair's distance at rest, mean since the last pass [m/s].
-  double grown(std::uint32_t i, const Body& a, const Body& b, double overlap, bool necked) const {
+  /// Rate at which heat has added to the pair's distance at rest since the last pass [m/s].
+  double growth(std::uint32_t i, const Body& a, const Body& b, double overlap, bool necked) const {
     const bool swapped = material[i] != material_a;
     return thermal_growth(a, b, overlap, swapped ? growth_b : growth_a, swapped ? growth_a : growth_b, necked);
   }
 };
 
-/// One near pair.  Uniform features (periodic or deforming cell, thermal growth) are branches; law, friction and sink
-/// are not.
+/// The near pair at `index`.  Uniform features (periodic or deforming cell, thermal growth) are branches; law, friction
+/// and sink are not.
 template <bool with_friction, class Law, class Sink>
 inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
-  const NearPair& pair = c.pair[index];
-  const std::uint32_t i = pair.i(), j = pair.j();
+  const std::uint32_t place = c.near[index], i = c.first[place], coded = c.second[place];
+  const std::uint32_t j = coded & ContactList::index_mask;
+  const Pair pair{index, place, i, j};
   const Body &a = c.body[i], &b = c.body[j];
   Vec3 branch = b.position - a.position;
-  if (c.shift) branch += c.shift[pair.image()];
+  if (c.shift) branch += c.shift[coded >> ContactList::index_bits];
   const double reach = a.radius + b.radius, d2 = branch.squaredNorm();
   bool necked = false;
-  if constexpr (has_necks<Law>) necked = c.neck[pair.place].phase != NeckPhase::loose;
+  if constexpr (has_necks<Law>) necked = c.neck[place].phase != NeckPhase::loose;
   if (d2 >= reach * reach && !necked) {
-    if constexpr (with_friction) c.tangential[pair.place].setZero();
-    sink.skip(index, pair);
+    if constexpr (with_friction) c.tangential[place].setZero();
+    sink.skip(pair);
     return;
   }
   const double d = std::sqrt(d2);
@@ -108,7 +116,7 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
   NormalInput in;
   in.overlap = d - reach;
   in.rate = vn;
-  if (c.growth_a != 0 || c.growth_b != 0) in.rate -= c.grown(i, a, b, in.overlap, necked);
+  if (c.growth_a != 0 || c.growth_b != 0) in.rate -= c.growth(i, a, b, in.overlap, necked);
   const double product = a.radius * b.radius / reach;
   in.elastic_radius = c.hertz_radius == HertzRadius::equivalent ? 2 * product : product;
   in.reduced_mass = 1 / (a.inverse_mass + b.inverse_mass);
@@ -119,7 +127,7 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
   if constexpr (has_necks<Law>) {
     in.sintering_radius =
         c.law.settings.radius == SinteringRadius::smaller ? std::min(a.radius, b.radius) : 2 * product;
-    f = c.law.update(in, c.neck[pair.place]);
+    f = c.law.update(in, c.neck[place]);
   } else {
     in.sintering_radius = 0;
     f = c.law.update(in);
@@ -129,10 +137,10 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
   result.force = f.total * n;
   if constexpr (with_friction) {
     double share = 1;
-    if constexpr (has_necks<Law>) share = c.law.friction_share(c.neck[pair.place], in.time);
+    if constexpr (has_necks<Law>) share = c.law.friction_share(c.neck[place], in.time);
     result.lever_i = a.radius + 0.5 * in.overlap;
     result.lever_j = b.radius + 0.5 * in.overlap;
-    Vec3& slip = c.tangential[pair.place];
+    Vec3& slip = c.tangential[place];
     if (share > 0) {
       const Vec3 spin = result.lever_i * c.angular_velocity[i] + result.lever_j * c.angular_velocity[j];
       const TangentialInput t{n,
@@ -154,7 +162,7 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
     double u = in.overlap;
     bool springs = true;  // a viscous contact has no spring to store energy in
     if constexpr (has_necks<Law>) {
-      if (const auto& h = c.neck[pair.place]; h.phase != NeckPhase::loose) {
+      if (const auto& h = c.neck[place]; h.phase != NeckPhase::loose) {
         u = h.elastic;
         springs = c.law.settings.model != SinteringModel::viscous || !Law::flows(h.phase);
       } else if (in.overlap >= 0) {
@@ -168,7 +176,7 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
     }
     result.touching = true;
   }
-  sink.template add<with_friction>(index, pair, result);
+  sink.template add<with_friction>(pair, result);
 }
 
 /// Copies bucket and sink so that nothing that the loop stores can change them.
@@ -184,10 +192,10 @@ struct ForcePass::ShareSink {
   Share* share;
   static constexpr bool records = false;
 
-  void skip(std::size_t index, const NearPair&) const { share[index] = {Vec3::Zero(), Vec3::Zero(), 0, 0}; }
+  void skip(const Pair& pair) const { share[pair.near] = {Vec3::Zero(), Vec3::Zero(), 0, 0}; }
   template <bool with_friction>
-  void add(std::size_t index, const NearPair&, const ContactRecord& c) const {
-    share[index] = {c.force, c.couple, c.lever_i, c.lever_j};
+  void add(const Pair& pair, const ContactRecord& c) const {
+    share[pair.near] = {c.force, c.couple, c.lever_i, c.lever_j};
   }
 };
 
@@ -195,18 +203,18 @@ void ForcePass::list_changed(const ContactList&, std::size_t) {
   near_.clear();
 }
 
-void ForcePass::near_changed(std::size_t particles) {
+void ForcePass::near_changed(const ContactList& list, std::size_t particles) {
   if (threads_ == 1) return;
-  const auto& pairs = near_.pairs();
-  shares_.resize(pairs.size());
+  const auto& places = near_.places();
+  shares_.resize(places.size());
   incidence_begin_.assign(particles + 1, 0);
-  for (const auto& p : pairs) ++incidence_begin_[p.i() + 1], ++incidence_begin_[p.j() + 1];
+  for (const std::uint32_t k : places) ++incidence_begin_[list.i(k) + 1], ++incidence_begin_[list.j(k) + 1];
   for (std::size_t p = 0; p < particles; ++p) incidence_begin_[p + 1] += incidence_begin_[p];
-  incidence_.resize(2 * pairs.size());
+  incidence_.resize(2 * places.size());
   std::vector<std::size_t> next(incidence_begin_.begin(), incidence_begin_.end() - 1);
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    incidence_[next[pairs[k].i()]++] = std::uint32_t(k << 1);
-    incidence_[next[pairs[k].j()]++] = std::uint32_t(k << 1 | 1);
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    incidence_[next[list.i(places[n])]++] = std::uint32_t(n << 1);
+    incidence_[next[list.j(places[n])]++] = std::uint32_t(n << 1 | 1);
   }
 }
 
@@ -232,18 +240,19 @@ void ForcePass::gather(Particles& particles) const {
 }
 
 /// The sums of a recorded pass, in the order of an unrecorded one.
-void ForcePass::add_recorded(Particles& particles, const std::vector<ContactRecord>& record) {
-  const auto& pairs = near_.pairs();
+void ForcePass::add_recorded(Particles& particles, const ContactList& list, const std::vector<ContactRecord>& record) {
+  const auto& places = near_.places();
   const DirectSink direct{particles.force.data(), particles.torque.data()};
   const ShareSink share{shares_.data()};
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const ContactRecord& c = record[pairs[k].place];
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const Pair pair{n, places[n], list.i(places[n]), list.j(places[n])};
+    const ContactRecord& c = record[pair.place];
     if (threads_ > 1)
-      share.add<true>(k, pairs[k], c);
+      share.add<true>(pair, c);
     else if (model_.friction)
-      direct.add<true>(k, pairs[k], c);
+      direct.add<true>(pair, c);
     else
-      direct.add<false>(k, pairs[k], c);
+      direct.add<false>(pair, c);
   }
 }
 
@@ -256,7 +265,9 @@ void ForcePass::run_bucket(const Law& law, std::size_t number, Particles& partic
   const Bucket<Law> bucket{law,
                            model_.friction.value_or(FrictionModel{}),
                            model_.hertz_radius,
-                           near_.pairs().data(),
+                           near_.places().data(),
+                           list.first.data(),
+                           list.second.data(),
                            particles.body.data(),
                            particles.angular_velocity.data(),
                            particles.material.data(),
@@ -291,7 +302,7 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
                         const std::vector<double>& expansion_step, PassTime clock, std::vector<ContactRecord>* record) {
   if (near_.empty()) {
     near_.take_all(list);
-    near_changed(particles.size());
+    near_changed(list, particles.size());
   }
   if (cell.periodic && (!shifts_ || cell.h != shifts_h_)) {
     shifts_.emplace(cell);
@@ -313,7 +324,7 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
         run(make_sintering<Spring>(model_, row));
     });
   }
-  if (record) add_recorded(particles, *record);
+  if (record) add_recorded(particles, list, *record);
   if (threads_ > 1) gather(particles);
 }
 

@@ -44,7 +44,7 @@ class ForcePass {
   /// The pairs that the passes visit; who prunes it must prune again before its travel() reaches its skin().
   NearList& near() { return near_; }
   /// To be called after pruning.
-  void near_changed(std::size_t particles);
+  void near_changed(const ContactList&, std::size_t particles);
 
   const ContactModel& model() const { return model_; }
   int threads() const { return threads_; }
@@ -61,7 +61,7 @@ class ForcePass {
   template <class Law>
   void run_bucket(const Law&, std::size_t bucket, Particles&, ContactList&, const Cell&,
                   const std::vector<double>& expansion_step, PassTime, std::vector<ContactRecord>* record);
-  void add_recorded(Particles&, const std::vector<ContactRecord>&);
+  void add_recorded(Particles&, const ContactList&, const std::vector<ContactRecord>&);
   void gather(Particles&) const;
 
   ContactModel model_;

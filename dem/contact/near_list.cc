@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace densify::dem {
 
@@ -14,8 +15,8 @@ constexpr double share_of_skin = 0.25;
 
 void NearList::take_all(const ContactList& list) {
   content_ = Content::all;
-  pairs_.resize(list.size());
-  for (std::size_t k = 0; k < list.size(); ++k) pairs_[k] = {list.first[k], list.second[k], std::uint32_t(k)};
+  places_.resize(list.size());
+  std::iota(places_.begin(), places_.end(), 0u);
   bucket_end_.clear();
   for (const auto& bucket : list.buckets) bucket_end_.push_back(bucket.end);
 }
@@ -26,7 +27,8 @@ void NearList::prune(ContactList& list, const Particles& particles, const Cell& 
   skin_ = share_of_skin * list.skin;
   const ImageShifts shifts(cell);
   const Body* const body = particles.body.data();
-  pairs_.resize(list.size());
+  places_.reserve(list.first.capacity());
+  places_.resize(list.size());
   bucket_end_.clear();
   std::size_t count = 0;
   for (const auto& bucket : list.buckets) {
@@ -35,13 +37,13 @@ void NearList::prune(ContactList& list, const Particles& particles, const Cell& 
       const double reach = a.radius + b.radius + skin_;
       bool near = (b.position - a.position + shifts[list.image(k)]).squaredNorm() < reach * reach;
       if (!list.neck.empty()) near = near || list.neck[k].phase != NeckPhase::loose;
-      pairs_[count] = {list.first[k], list.second[k], std::uint32_t(k)};
+      places_[count] = std::uint32_t(k);
       count += near;
       if (!near && !list.tangential.empty()) list.tangential[k].setZero();
     }
     bucket_end_.push_back(count);
   }
-  pairs_.resize(count);
+  places_.resize(count);
 
   reference_position_.resize(particles.size());
   for (std::size_t p = 0; p < particles.size(); ++p) reference_position_[p] = body[p].position;
@@ -58,7 +60,7 @@ double NearList::travel(const Particles& particles, const Cell& cell, const std:
 }
 
 std::size_t NearList::bytes() const {
-  return pairs_.capacity() * sizeof(NearPair) + bucket_end_.capacity() * sizeof(std::size_t) +
+  return places_.capacity() * sizeof(std::uint32_t) + bucket_end_.capacity() * sizeof(std::size_t) +
          reference_position_.capacity() * sizeof(Vec3) + reference_expansion_.capacity() * sizeof(double);
 }
 

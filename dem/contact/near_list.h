@@ -8,17 +8,6 @@
 
 namespace densify::dem {
 
-/// A pair as the contact pass reads it.
-struct NearPair {
-  std::uint32_t first;   ///< i
-  std::uint32_t second;  ///< j | image code << 27
-  std::uint32_t place;   ///< in the contact list
-
-  std::uint32_t i() const { return first; }
-  std::uint32_t j() const { return second & ContactList::index_mask; }
-  std::uint8_t image() const { return std::uint8_t(second >> ContactList::index_bits); }
-};
-
 /// The translations h n of the 27 image codes [m]; zero in a cell that is not periodic.
 class ImageShifts {
  public:
@@ -34,8 +23,8 @@ class ImageShifts {
 
 class NearList {
  public:
-  /// Forgets everything, after the contact list has changed.
-  void clear() { content_ = Content::nothing; }
+  /// Forgets everything and gives its memory back, for a rebuild of the contact list.
+  void clear() { *this = NearList(); }
   bool empty() const { return content_ == Content::nothing; }
 
   /// All pairs of the list, good for as long as the list is.
@@ -50,8 +39,8 @@ class NearList {
   double travel(const Particles&, const Cell&, const std::vector<double>& expansion, int threads) const;
   double skin() const { return skin_; }  ///< [m]
 
-  /// Pairs of the list's buckets one after another; bucket b ends at bucket_end()[b].
-  const std::vector<NearPair>& pairs() const { return pairs_; }
+  /// Places in the contact list, ascending; those of bucket b end at bucket_end()[b].
+  const std::vector<std::uint32_t>& places() const { return places_; }
   const std::vector<std::size_t>& bucket_end() const { return bucket_end_; }
 
   std::size_t bytes() const;
@@ -60,7 +49,7 @@ class NearList {
   enum class Content : std::uint8_t { nothing, all, pruned };
 
   Content content_ = Content::nothing;
-  std::vector<NearPair> pairs_;
+  std::vector<std::uint32_t> places_;
   std::vector<std::size_t> bucket_end_;
   // When it was pruned:
   std::vector<Vec3> reference_position_;

@@ -69,13 +69,17 @@ TEST(Bench, ForceCheckSeesALostContact) {
 TEST(Bench, JsonHasItsKeys) {
   BenchResult r;
   r.packing = "m2k";
-  r.benchmark = "B";
+  r.benchmark.assign(1, 'B');
   r.particles = 2000;
   r.ns_per_contact_step = 12.3456;
   const std::string json = to_json(r);
   for (const char* key : {"packing", "case", "particles", "coordination_number", "ns_per_contact_step",
-                          "particle_steps_per_s", "bytes_per_particle", "list_builds", "force_check"})
-    EXPECT_NE(json.find(std::string(1, '"') + key + "\": "), std::string::npos) << key;
+                          "particle_steps_per_s", "bytes_per_particle", "list_builds", "force_check"}) {
+    std::string quoted(1, '"');
+    quoted += key;
+    quoted += "\": ";
+    EXPECT_NE(json.find(quoted), std::string::npos) << key;
+  }
   EXPECT_NE(json.find("\"ns_per_contact_step\": 12.346,"), std::string::npos) << json;
   EXPECT_EQ(json.front(), '{');
   EXPECT_EQ(json.back(), '}');
