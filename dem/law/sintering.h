@@ -106,8 +106,8 @@ struct SinteringContact {
                                                             : 1 / series_viscosity(h.phase, neck, share);
     // Theta rule for du_e/dt = rate - F(u_e)/eta, one Newton step: theta 1 backward Euler (L-stable), 1/2 (4.67).
     const double theta = settings.update == MaxwellUpdate::trapezoidal ? 0.5 : 1.0;
-    const double elastic_rate = (in.rate - mobility * loose.spring.force(before, in.elastic_radius)) /
-                                (1 + theta * in.step * mobility * k);
+    const double elastic_rate =
+        (in.rate - mobility * loose.spring.force(before, in.elastic_radius)) / (1 + theta * in.step * mobility * k);
     h.elastic = before + in.step * elastic_rate;
     double f = loose.spring.force(h.elastic, in.elastic_radius);
     // The damper sees the elastic part of the rate only: it stills vibration and adds no viscosity to the flow.

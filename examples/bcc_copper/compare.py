@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Density of body-centred cubic copper while it sinters: a block of spheres against one pair and (5.3) (thesis Fig. 5.8).
+"""Density of body-centred cubic copper while it sinters: a block against one pair and (5.3) (thesis Fig. 5.8).
 
     compare.py [--again]
 
@@ -52,7 +52,8 @@ def main():
     parser.add_argument("--again", action="store_true", help="run all again")
     options = parser.parse_args()
     build()
-    costs = {name: run_case(scene, RESULTS / name, settings, options.again) for name, (scene, settings) in CASES.items()}
+    costs = {name: run_case(scene, RESULTS / name, settings, options.again)
+             for name, (scene, settings) in CASES.items()}
     (t_pair, e_pair, _), (t_block, e_block, spread) = curve("pair"), curve("block")
     t_light, e_light, _ = curve("light_block")
     box_density = Results(RESULTS / "block").history["relative_density"]

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Hot press NiAl powder by processes I and II with both readings of the sintering contact, and compare with measurement.
+"""Hot press NiAl powder by processes I and II with both readings of the sintering contact, beside measured densities.
 
-    compare.py [--again]
+    compare.py [--again] [--arrangements N]
 
-Runs the four cases with ./densify into results/hot_press_nial/CASE, unless their results are there from an earlier call,
-prints the tables of README.md and draws shrinkage.png and rate.png of thesis Figs 5.25 and 5.30.  Needs numpy, h5py and
-matplotlib.
+Runs the four cases with ./densify into results/hot_press_nial/CASE, unless their results are there from an earlier
+call, prints the tables of README.md and draws shrinkage.png and rate.png (thesis Figs 5.25, 5.30).  With --arrangements
+also process I to the end of the hold for N arrangements of the particles at mass factor 1e18, for mean and scatter.
+Needs numpy, h5py and matplotlib.
 """
 
 import argparse
@@ -31,14 +32,16 @@ CASES = {
     "process_2": ("scene_process_2.toml", []),
     "process_2_second_reading": ("scene_second_reading.toml", ["process.stage.1.pressure=5 MPa"]),
 }
+# Process I without cooling: ten times fewer steps to the end of the hold, the last two stages cut to a second each.
+ARRANGEMENT = ["integration.mass_scaling=1e18", "process.stage.7.temperature=1400 degC", "process.stage.7.duration=1 s",
+               "process.stage.8.end=9302 s", "output.visualisation=false"]
 MEASURED = {"I": "measured.csv", "II": "measured_process_2.csv"}
 
 
 class Case:
     """A finished run and the rows of its history that end a stage."""
 
-    def __init__(self, name, again):
-        scene, settings = CASES[name]
+    def __init__(self, name, scene, settings, again):
         self.cost = run_case(HERE / scene, RESULTS / name, settings, again)
         results = Results(RESULTS / name)
         self.history = results.history
@@ -78,12 +81,13 @@ def print_densities(cases):
 
 def print_state(cases):
     print("\n| case | coordination at 1 / 5 | necks at equilibrium at 5 / end | largest overlap at 5 [r] "
-          "| punch pressure / applied, points 1 to 5 | cooling |")
+          "| punch pressure / applied, heating and hold | cooling |")
     print("|---" * 6 + "|")
     for name, case in cases.items():
         z, eq = case.at_ends("coordination_number"), case.at_ends("neck_equilibrium_fraction")
         print(f"| {name} | {z[1]:.2f} / {z[5]:.2f} | {100 * eq[5]:.0f} % / {100 * eq[-1]:.0f} % "
-              f"| {case.at_ends('largest_overlap')[5]:.2f} | {case.punch_mean(1, 5):.4f} | {case.punch_mean(6, 6):.4f} |")
+              f"| {case.at_ends('largest_overlap')[5]:.2f} | {case.punch_mean(1, 5):.4f} "
+              f"| {case.punch_mean(6, 6):.4f} |")
 
 
 def print_cost(cases):
@@ -96,6 +100,20 @@ def print_cost(cases):
               + f" | {case.cost['seconds']:.0f} | {1e6 * case.cost['seconds'] / s[-1]:.0f} |")
 
 
+def print_arrangements(count, again):
+    print(f"\n| process I, {count} arrangements, mass factor 1e18 | loaded | 1 | 2 | 3 | 4 | 5 |")
+    print("|---" * 7 + "|")
+    for scene, label in (("scene.toml", "reading of the text"), ("scene_second_reading.toml", "second reading")):
+        runs = []
+        for seed in range(1, count + 1):
+            name = f"arrangement_{seed}" + ("_second_reading" if label.startswith("second") else "")
+            print(f"{name} ...", file=sys.stderr)
+            settings = ARRANGEMENT + [f"specimen.seed={seed}", f"specimen.packing.seed={seed}"]
+            runs.append(Case(name, scene, settings, again).at_ends("relative_density")[:6])
+        mean, scatter = np.mean(runs, axis=0), np.std(runs, axis=0, ddof=1)
+        print(f"| {label} | " + " | ".join(f"{m:.3f} ± {s:.3f}" for m, s in zip(mean, scatter)) + " |")
+
+
 def save(figure, name):
     (HERE / "pictures").mkdir(exist_ok=True)
     figure.savefig(HERE / "pictures" / name, dpi=110)
@@ -106,9 +124,9 @@ def draw_shrinkage(case):
     """Thesis Fig. 5.25."""
     figure, axis = plt.subplots(figsize=(7, 4.2), constrained_layout=True)
     minutes = case.history["time_s"] / 60
-    for column, label, style in (("shrinkage_x", "x", "C0-"), ("shrinkage_y", "y", "C1--"), ("shrinkage_z", "z", "C2-"),
-                                 ("shrinkage_volume", "volume", "k-")):
-        axis.plot(minutes, case.history[column], style, label=f"$\\phi_{{{label if len(label) == 1 else 'V'}}}$ {label}")
+    for column, label, style in (("shrinkage_x", "$\\phi_x$", "C0-"), ("shrinkage_y", "$\\phi_y$", "C1--"),
+                                 ("shrinkage_z", "$\\phi_z$", "C2-"), ("shrinkage_volume", "$\\phi_V$", "k-")):
+        axis.plot(minutes, case.history[column], style, label=label)
     axis.set_xlabel("time [min]")
     axis.set_ylabel("present over initial size")
     axis.grid(alpha=0.3)
@@ -139,17 +157,20 @@ def draw_rate(cases):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--again", action="store_true", help="run all cases again")
+    parser.add_argument("--arrangements", type=int, default=0, metavar="N", help="arrangements for mean and scatter")
     options = parser.parse_args()
     build()
     cases = {}
     for name in CASES:
         print(f"{name} ...", file=sys.stderr)
-        cases[name] = Case(name, options.again)
+        cases[name] = Case(name, *CASES[name], options.again)
     print_densities(cases)
     print_state(cases)
     print_cost(cases)
     draw_shrinkage(cases["process_1"])
     draw_rate(cases)
+    if options.arrangements:
+        print_arrangements(options.arrangements, options.again)
 
 
 if __name__ == "__main__":

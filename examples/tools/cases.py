@@ -21,7 +21,7 @@ def build():
 
 
 def run_case(scene, folder, settings=(), again=False):
-    """Runs a scene into the folder unless its results are there; returns user time [s], steps and end of the process [s]."""
+    """Runs a scene into the folder unless its results are there; returns user time [s], steps and process time [s]."""
     folder = pathlib.Path(folder)
     note = folder / "cost.json"
     if again or not note.exists():

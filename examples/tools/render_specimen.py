@@ -145,7 +145,8 @@ def scene_of(snapshot, values, table, top, panel):
     renderer.ResetCameraClippingRange()
     celsius = snapshot.temperature - 273.15
     renderer.AddActor2D(caption(f"{snapshot.time / 60:.0f} min, {celsius:.0f} °C, {snapshot.pressure * 1e-6:g} MPa\n"
-                                f"relative density {snapshot.relative_density:.3f}, height {punch:.1f} µm", 20, 0.5, 0.03, True))
+                                f"relative density {snapshot.relative_density:.3f}, height {punch:.1f} µm",
+                                20, 0.5, 0.03, True))
     return renderer
 
 

@@ -7,8 +7,8 @@
 namespace densify::test {
 namespace {
 
-// A run taken in halves and recorded at every third step ends at the same bits as one that
-// never was, with one thread and with two.
+// A run taken in halves and recorded at every third step ends at the same bits as one that never was, with one thread
+// and with two.
 TEST(Recording, ChangesNothing) {
   for (World w : all_worlds)
     for (int threads : {1, 2}) {
