@@ -82,8 +82,8 @@ struct Bucket {
   std::uint8_t material_a;
   PassTime clock;
 
-  /// Rate at which heat has added to the pair's distance at rest since the last pass [m/s].
-  double growth(std::uint32_t i, const Body& a, const Body& b, double overlap, bool necked) const {
+  /// What heat adds to the pair's distance at rest, mean since the last pass [m/s].
+  double grown(std::uint32_t i, const Body& a, const Body& b, double overlap, bool necked) const {
     const bool swapped = material[i] != material_a;
     return thermal_growth(a, b, overlap, swapped ? growth_b : growth_a, swapped ? growth_a : growth_b, necked);
   }
@@ -116,7 +116,7 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
   NormalInput in;
   in.overlap = d - reach;
   in.rate = vn;
-  if (c.growth_a != 0 || c.growth_b != 0) in.rate -= c.growth(i, a, b, in.overlap, necked);
+  if (c.growth_a != 0 || c.growth_b != 0) in.rate -= c.grown(i, a, b, in.overlap, necked);
   const double product = a.radius * b.radius / reach;
   in.elastic_radius = c.hertz_radius == HertzRadius::equivalent ? 2 * product : product;
   in.reduced_mass = 1 / (a.inverse_mass + b.inverse_mass);
