@@ -28,7 +28,7 @@ damaged checkpoint.h5 'head -c 20000'
 damaged checkpoint.h5 'tr "\\000" "\\001"'
 damaged specimen.h5 'echo garbage'
 damaged specimen.h5 'head -c 3000'
-damaged history.csv 'head -c 1000'
+damaged history.csv 'head -c 100'  # shorter than its header: short for a checkpoint of any moment
 damaged history.csv 'tr t T'
 rm -rf trial && cp -r half trial && rm trial/specimen.h5
 refuses 'trial/specimen.h5' 'start again without --resume' -- run lattice.toml --quiet --resume --out trial
