@@ -8,7 +8,7 @@ namespace densify::dem {
 
 namespace {
 
-// Of the list's skin.  Smaller: fewer pairs in a pass, more prunings (half a pass each); flat between 0.1 and 0.4.
+// Of the list's skin.  Smaller: fewer pairs in a pass, more prunings (half a pass each).
 constexpr double share_of_skin = 0.25;
 
 }  // namespace

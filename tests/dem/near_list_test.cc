@@ -36,7 +36,7 @@ TEST(NearList, ChangesNoResult) {
 
 // What is left out is farther apart than the near skin, and travel() is twice the largest way since: 0.01 um moved.
 TEST(NearList, LeavesOutOnlyWhatIsFar) {
-  dem::Setup setup = testing::periodic_packing(1);
+  auto setup = testing::periodic_packing(1);
   setup.integration.skin = 1;  // reaches the second neighbours of the lattice
   Simulation sim(setup);
   State state = sim.state();
