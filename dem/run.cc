@@ -130,7 +130,7 @@ class Run {
   double last_snapshot_ = 0, next_row_ = 0, next_snapshot_ = 0;  // process time [s]
   double row_interval_ = 0, snapshot_interval_ = 0;
   double last_checkpoint_ = 0, last_progress_ = -1;  // wall time [s]
-  double start_time_ = 0, start_wall_ = 0;           // where this session took up the process
+  double start_time_ = 0, start_wall_ = 0;           // where this call took up the process
   std::uint64_t start_steps_ = 0;
   double packing_seconds_ = 0, force_seconds_ = 0, motion_seconds_ = 0, output_seconds_ = 0, checkpoint_seconds_ = 0;
   RunSummary summary_;

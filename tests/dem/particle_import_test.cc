@@ -18,7 +18,8 @@ constexpr double um = 1e-6;
 /// A file in the test's own folder with the given text.
 std::string write(const std::string& text) {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  const std::string path = testing::TempDir() + "densify_import_" + test->name() + ".txt";
+  const std::string path =
+      testing::TempDir() + "densify_import_" + test->test_suite_name() + "_" + test->name() + ".txt";
   std::ofstream(path) << text;
   return path;
 }
