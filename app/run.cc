@@ -73,7 +73,7 @@ class ProgressLine {
   int last_tenth_ = -1;
 };
 
-void print_summary(const dem::RunSummary& s, const fs::path& folder, int threads) {
+void print_summary(const dem::RunSummary& s, const fs::path& folder) {
   const dem::Measures& m = s.last;
   fmt::print("\nrelative density {:.4f}", m.relative_density);
   if (std::isfinite(m.relative_density_inner)) fmt::print(" (inner {:.4f})", m.relative_density_inner);
@@ -85,8 +85,8 @@ void print_summary(const dem::RunSummary& s, const fs::path& folder, int threads
   for (const auto& share : s.shares)
     fmt::print("{:<28s}{:>10.2f}{:>8.1f}\n", share.what, share.seconds, 100 * share.seconds / s.wall_seconds);
   fmt::print("{:<28s}{:>10.2f}{:>8.1f}\n", "total", s.wall_seconds, 100.0);
-  fmt::print("{} steps on {} thread{}, {} neighbour list builds, {:.1f} MB of state\n", s.steps, threads,
-             threads == 1 ? "" : "s", s.list_builds, double(s.bytes) * 1e-6);
+  fmt::print("{} steps on {} thread{}, {} neighbour list builds, {:.1f} MB of state\n", s.steps, s.threads,
+             s.threads == 1 ? "" : "s", s.list_builds, double(s.bytes) * 1e-6);
   fmt::print("warnings: {}\n", s.warnings.empty() ? "none" : std::to_string(s.warnings.size()));
   for (const auto& w : s.warnings) fmt::print("  {}\n", w);
   fmt::print("\nresults in {}\n", folder.string());
@@ -125,7 +125,7 @@ int run_command(const RunCommand& command) {
   try {
     const dem::RunSummary summary = dem::run(scene, options);
     line.end();
-    if (!command.quiet) print_summary(summary, folder, command.threads);
+    if (!command.quiet) print_summary(summary, folder);
   } catch (...) {
     line.end();
     throw;

@@ -329,6 +329,7 @@ RunSummary Run::whole() {
   const State& state = sim_->state();
   summary_.wall_seconds = clock_.seconds();
   summary_.steps = state.steps - start_steps_;
+  summary_.threads = sim_->setup().integration.threads;
   summary_.list_builds = state.contacts.builds;
   summary_.bytes = sim_->bytes();
   summary_.end_time = state.time;

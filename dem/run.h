@@ -42,6 +42,7 @@ struct RunSummary {
   std::vector<Share> shares;
   double wall_seconds = 0;
   std::uint64_t steps = 0;
+  int threads = 1;  ///< in use: at most those asked for, fewer for few particles
   std::size_t list_builds = 0;
   std::size_t bytes = 0;  ///< of state and scratch
   Measures last;

@@ -16,8 +16,12 @@ run_to() {
 }
 
 run_to one lattice.toml
-run_to two lattice.toml --threads 2
-same_end one two
+# Two threads; the summary must say that two were at work, or this would compare a run with itself.
+run_to press small_press.toml --threads 1
+run_code run small_press.toml --out press_two --threads 2
+[ "$code" -eq 0 ] || fail "two threads: exit code $code: $(cat "$err")"
+grep -q ' on 2 threads' "$out" || fail "two threads were asked for: $(cat "$out")"
+same_end press press_two
 run_to again lattice.toml
 same_end one again
 mkdir -p elsewhere/deep && cp lattice.toml lattice.csv elsewhere/deep
