@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "dem/integrate/time_step.h"
 #include "dem/specimen.h"
+#include "dem/specimen_report.h"
 
 namespace densify::app {
 
@@ -42,11 +43,11 @@ int check(const dem::Scene& scene, const CheckCommand& command) {
   const auto n = double(powder.diameter.size());
   double limit;
   if (scene.import) {
-    const dem::Specimen specimen = dem::make_specimen(scene, command.threads, {});
-    dem::Simulation sim(dem::make_setup(scene, specimen.body, command.threads));
+    const dem::GreenBody body = dem::make_specimen(scene, command.threads, {});
+    dem::Simulation sim(dem::make_setup(scene, body, command.threads));
     sim.require_stable_step();
     limit = sim.step_limit().critical;
-    for (const auto& line : specimen.lines) fmt::print("{}\n", line);
+    for (const auto& line : dem::report_on(body, scene.materials).lines) fmt::print("{}\n", line);
     fmt::print("critical step at the start      {:.4g} s\n", limit);
   } else {
     // Constructing the table checks that every property the model needs is there.

@@ -9,10 +9,12 @@
 #include "base/check.h"
 #include "base/version.h"
 #include "dem/history_row.h"
+#include "dem/io/atomic_file.h"
 #include "dem/io/checkpoint.h"
 #include "dem/io/result_file.h"
 #include "dem/io/result_folder.h"
 #include "dem/io/visualisation.h"
+#include "dem/specimen_report.h"
 
 namespace densify::dem {
 
@@ -38,9 +40,10 @@ struct Paths {
   explicit Paths(const fs::path& folder)
       : checkpoint(folder / "checkpoint.h5"),
         specimen(folder / "specimen.h5"),
+        sizes(folder / "particle_sizes.csv"),
         history(folder / "history.csv"),
         pictures(folder / "paraview") {}
-  fs::path checkpoint, specimen, history, pictures;
+  fs::path checkpoint, specimen, sizes, history, pictures;
 };
 
 /// The first multiple of the interval after a time [s]; never, without an interval.
@@ -64,7 +67,7 @@ std::string deepest_pair(const State& state) {
 }
 
 /// The numbers behind the scene's numbers, as comments that a scene reader skips.
-std::string derived_text(const Scene& scene, const Simulation& sim, const Specimen* specimen) {
+std::string derived_text(const Scene& scene, Simulation& sim, const SpecimenReport& specimen) {
   std::ostringstream out;
   out.precision(9);
   const double real = [&] {
@@ -91,8 +94,8 @@ std::string derived_text(const Scene& scene, const Simulation& sim, const Specim
           << f.activation_temperature << " K; D_eff(" << peak << " K) = " << f.diffusion.effective(peak)
           << " m^5/(N s)\n";
     }
-  if (specimen)
-    for (const auto& line : specimen->lines) out << "# specimen: " << line << "\n";
+  out << "# critical step at the start = " << sim.step_limit().critical << " s\n";
+  for (const auto& line : specimen.lines) out << "# specimen: " << line << "\n";
   out << "# densify " << version() << " (" << git_revision() << ")\n";
   return out.str();
 }
@@ -139,13 +142,12 @@ class Run {
 void Run::prepare() {
   folder_made_ = open_result_folder(options_.folder, options_.mode);
   owner_ = {fingerprint(scene_), options_.version};
-  std::optional<Specimen> specimen;
   GreenBody body;
   if (options_.mode == Continue::resume) {
     require_checkpoint(paths_.checkpoint, owner_);  // before a specimen of another scene is made to fit this one
     body = read_specimen(paths_.specimen);
   } else {
-    specimen = make_specimen(scene_, options_.threads, [this](double share) {
+    body = make_specimen(scene_, options_.threads, [this](double share) {
       if (options_.stop && *options_.stop)
         throw Interrupted("interrupted while packing; there is nothing to resume yet, start the run again");
       if (options_.progress && clock_.seconds() - last_progress_ > 0.25) {
@@ -153,9 +155,10 @@ void Run::prepare() {
         options_.progress({"packing", share, 0, 0, 0, 0, 0, share > 0 ? last_progress_ * (1 / share - 1) : 0});
       }
     });
-    body = specimen->body;
-    for (const auto& line : specimen->lines) say(line);
   }
+  const SpecimenReport specimen = report_on(body, scene_.materials);
+  if (options_.mode == Continue::fresh)
+    for (const auto& line : specimen.lines) say(line);
   packing_seconds_ = clock_.seconds();
   sim_.emplace(make_setup(scene_, body, options_.threads));
   sim_->require_stable_step();
@@ -164,8 +167,8 @@ void Run::prepare() {
   row_interval_ = std::isnan(scene_.output.history_interval) ? schedule.end() / 400 : scene_.output.history_interval;
   snapshot_interval_ = scene_.output.snapshot_interval;
   const auto columns = history_columns(sim_->setup());
-  RunDescription description{scene_.effective_text + derived_text(scene_, *sim_, specimen ? &*specimen : nullptr),
-                             std::string(version()), std::string(git_revision()), columns};
+  RunDescription description{scene_.effective_text + derived_text(scene_, *sim_, specimen), std::string(version()),
+                             std::string(git_revision()), columns};
   if (options_.mode == Continue::resume) {
     position_ = read_checkpoint(paths_.checkpoint, *sim_, owner_);
     if (position_.numbers.size() != HistoryMemory::size + 1)
@@ -176,6 +179,7 @@ void Run::prepare() {
     say("resumed at process time " + text("%.6g s", sim_->state().time));
   } else {
     write_specimen(paths_.specimen, body);
+    write_atomically(paths_.sizes, {specimen.sizes_csv}, Durability::kill);
     history_.emplace(HistoryFile::create(paths_.history, columns));
     position_.history_bytes = history_->bytes();
     write_checkpoint_now();  // from here on the folder can be resumed

@@ -123,43 +123,15 @@ PowderSample particles_of(const Scene& scene) {
   return sample;
 }
 
-Specimen make_specimen(const Scene& scene, int threads, const PackingProgress& progress) {
-  Specimen specimen;
-  if (scene.import) {
-    specimen.body = import_body(scene);
-  } else {
-    const PowderSample sample = draw(*scene.powder);
-    const PackingSettings settings = scene.packing.value_or(PackingSettings{});
-    const CompactionGoal goal{scene.container, settings.green_density, settings.friction, settings.largest_overlap,
-                              settings.seed};
-    specimen.body = compact(sample.diameter, sample.material, goal, threads, progress);
-    reject_unpacked(specimen.body, settings.green_density);
-  }
-
-  std::vector<double> diameters;
-  for (double r : specimen.body.particles.reference_radius) diameters.push_back(2 * r);
-  const auto [low, high] = std::minmax_element(diameters.begin(), diameters.end());
-  std::vector<double> edges;
-  constexpr int bins = 20;
-  for (int b = 0; b <= bins; ++b) edges.push_back(*low + (*high - *low) * b / bins);
-  if (*high > *low) {
-    edges.back() = *high;
-    specimen.sizes = size_statistics(diameters, edges);
-  } else {
-    specimen.sizes = {diameters.size(), *low, 0, *low, *high, solid_volume(diameters), {*low, *high}, {1}, {1}};
-  }
-  const SizeStatistics& s = specimen.sizes;
-  specimen.lines.push_back(std::to_string(s.count) + " particles, solid volume " +
-                           formatted("%.4g um^3 (%.4g m^3)", s.solid_volume * 1e18, s.solid_volume));
-  specimen.lines.push_back(
-      formatted("diameter mean %.3f um, standard deviation %.3f um", s.mean * 1e6, s.standard_deviation * 1e6) +
-      formatted(", %.2f to %.2f um", s.minimum * 1e6, s.maximum * 1e6));
-  if (!scene.import)
-    specimen.lines.push_back(formatted("green density %.4f, coordination number %.2f", specimen.body.relative_density,
-                                       specimen.body.coordination_number) +
-                             formatted(", mean overlap %.3f %% of the mean radius (%.0f packing steps)",
-                                       100 * specimen.body.mean_overlap, double(specimen.body.steps)));
-  return specimen;
+GreenBody make_specimen(const Scene& scene, int threads, const PackingProgress& progress) {
+  if (scene.import) return import_body(scene);
+  const PowderSample sample = draw(*scene.powder);
+  const PackingSettings settings = scene.packing.value_or(PackingSettings{});
+  const CompactionGoal goal{scene.container, settings.green_density, settings.friction, settings.largest_overlap,
+                            settings.seed};
+  GreenBody body = compact(sample.diameter, sample.material, goal, threads, progress);
+  reject_unpacked(body, settings.green_density);
+  return body;
 }
 
 Setup make_setup(const Scene& scene, const GreenBody& body, int threads) {

@@ -6,16 +6,9 @@
 
 namespace densify::dem {
 
-/// The specimen at the start of the process, with what is worth reporting of its making.
-struct Specimen {
-  GreenBody body;
-  SizeStatistics sizes;            ///< of all diameters, bins of a twentieth of the range
-  std::vector<std::string> lines;  ///< the same in words, for the log
-};
-
 /// Draws and packs, or imports, what the scene asks for.  Throws InputError: empty powder, unreachable density,
 /// overlapping import, particle outside its container, ...
-Specimen make_specimen(const Scene&, int threads, const PackingProgress&);
+GreenBody make_specimen(const Scene&, int threads, const PackingProgress&);
 
 /// The diameters [m] and materials that the scene's powder or import asks for, without packing them.
 PowderSample particles_of(const Scene&);

@@ -47,8 +47,9 @@ def same(x, y):  # numbers bit for bit (NaN included), texts by content
     return x.tolist() == y.tolist() if x.dtype == object else x.tobytes() == y.tobytes()
 different = [n for n in names if not same(a[n][()], b[n][()])]
 if not names or different:
-    sys.exit("final states differ in " + ", ".join(different or ["everything: no datasets"]))
+    sys.exit(sys.argv[1] + " and the resumed one differ in " + ", ".join(different or ["everything: no datasets"]))
 PY
 }
 cmp_state "$work/whole/checkpoint.h5" "$work/killed/checkpoint.h5"
+cmp_state "$work/whole/result.h5" "$work/killed/result.h5"  # snapshots, and the effective input with what was derived
 echo "killed $kills times, resumed, identical"

@@ -58,7 +58,7 @@ std::string final_state(const Scene& scene, const std::filesystem::path& folder)
 }
 
 Simulation simulation_of(const Scene& scene) {
-  return Simulation(make_setup(scene, make_specimen(scene, 1, {}).body, 1));
+  return Simulation(make_setup(scene, make_specimen(scene, 1, {}), 1));
 }
 
 bool has_column(const Scene& scene, const std::string& part) {
