@@ -1,0 +1,1 @@
+// A place for the precompiled headers of the tests (CMakeLists.txt).
