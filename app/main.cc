@@ -34,7 +34,9 @@ int run_main(int argc, char** argv) {
   run_command->add_option("SCENE", run.scene, "A scene file, or a folder that holds scene.toml")->required();
   run_command->add_option("--out", run.folder, "Folder of the results; without it results/NAME");
   run_command->add_option("--set", run.overrides, "path.to.key=value, again for each")->take_all();
-  run_command->add_option("--threads", run.threads, "Threads; results do not depend on their number")
+  run_command
+      ->add_option("--threads", run.threads,
+                   "Threads; results do not depend on their number; without it one, or with realisations one a core")
       ->check(CLI::Range(1, 1024));
   run_command->add_flag("--resume", run.resume, "Continue from the checkpoint in the folder of the results");
   run_command->add_flag("--quiet", run.quiet, "No progress, no summary");

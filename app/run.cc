@@ -4,10 +4,13 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <thread>
 
 #include "base/version.h"
+#include "dem/ensemble.h"
 #include "dem/run.h"
 
 namespace densify::app {
@@ -58,6 +61,17 @@ class ProgressLine {
       fmt::print(stderr, "{}\n", line);
     }
   }
+  void show(const dem::EnsembleProgress& p) {
+    if (quiet_) return;
+    const int tenth = int(10 * p.share);
+    if (!terminal_ && tenth == last_tenth_) return;
+    last_tenth_ = tenth;
+    const std::string line = fmt::format("{:3.0f} %  realisations: {} of {} done, {} running  left {}", 100 * p.share,
+                                         p.done, p.all, p.running, duration(p.seconds_left));
+    fmt::print(stderr, fmt::runtime(terminal_ ? "\r{:<118s}" : "{}\n"), line);
+    std::fflush(stderr);
+    open_ = terminal_;
+  }
   void say(const std::string& line) {
     if (quiet_) return;
     end();
@@ -92,6 +106,58 @@ void print_summary(const dem::RunSummary& s, const fs::path& folder) {
   fmt::print("\nresults in {}\n", folder.string());
 }
 
+/// The mean of the last row, and what the arrangement of the particles makes of it.
+void print_ensemble(const dem::EnsembleSummary& s, const dem::Scene& scene, const fs::path& folder) {
+  const dem::EnsembleHistory& h = s.history;
+  const double n = double(h.realisations);
+  auto line = [&](const char* label, const char* column) {
+    const std::size_t c = dem::column_index(h.mean, column);
+    const double error = h.standard_error.values[c].back();
+    fmt::print("{} {:.4f} +- {:.4f} (from one to the next +- {:.4f})\n", label, h.mean.values[c].back(), error,
+               error * std::sqrt(n));
+  };
+  fmt::print("\n{} realisations ({}), mean +- standard error:\n", h.realisations,
+             scene.perturbation.size > 0 ? "perturbations of one specimen" : "particle arrangements");
+  line("relative density", "relative_density");
+  line("coordination number", "coordination_number");
+  std::uint64_t steps = 0;
+  double cpu = 0, packing = 0;
+  std::size_t bytes = 0, warnings = 0;
+  for (const auto& r : s.realisation) {
+    steps += r.steps;
+    cpu += r.cpu_seconds;
+    packing += r.packing_seconds;
+    bytes += r.bytes;
+    warnings += r.warnings.size();
+  }
+  fmt::print("{:.2f} s; {} steps in {:.2f} s of processor time after {:.2f} s of packing, {:.1f} MB of state in all\n",
+             s.wall_seconds, steps, cpu, packing, double(bytes) * 1e-6);
+  fmt::print("warnings: {}\n", warnings == 0 ? "none" : std::to_string(warnings));
+  for (std::size_t k = 0; k < s.realisation.size(); ++k)
+    for (const auto& w : s.realisation[k].warnings) fmt::print("  realisation {}: {}\n", k + 1, w);
+  fmt::print("\nresults in {}\n", folder.string());
+}
+
+int run_realisations(const dem::Scene& scene, const RunCommand& command, const fs::path& folder) {
+  ProgressLine line(command.quiet);
+  dem::EnsembleOptions options;
+  options.folder = folder;
+  options.mode = command.resume ? dem::Continue::resume : dem::Continue::fresh;
+  options.threads = command.threads > 0 ? command.threads : int(std::max(1u, std::thread::hardware_concurrency()));
+  options.version = std::string(version());
+  options.progress = [&](const dem::EnsembleProgress& p) { line.show(p); };
+  options.stop = &stop_requested;
+  try {
+    const dem::EnsembleSummary summary = dem::run_ensemble(scene, options);
+    line.end();
+    if (!command.quiet) print_ensemble(summary, scene, folder);
+  } catch (...) {
+    line.end();
+    throw;
+  }
+  return 0;
+}
+
 }  // namespace
 
 int run_command(const RunCommand& command) {
@@ -113,11 +179,12 @@ int run_command(const RunCommand& command) {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is to be a failed write, as a full disk is
+  if (scene.realisations > 1) return run_realisations(scene, command, folder);
   ProgressLine line(command.quiet);
   dem::RunOptions options;
   options.folder = folder;
   options.mode = command.resume ? dem::Continue::resume : dem::Continue::fresh;
-  options.threads = command.threads;
+  options.threads = std::max(1, command.threads);
   options.version = std::string(version());
   options.progress = [&](const dem::Progress& p) { line.show(p); };
   options.say = [&](const std::string& text) { line.say(text); };

@@ -1,5 +1,7 @@
 #include "dem/run.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -29,6 +31,13 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// Processor time of this thread [s].
+double thread_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
 
 std::string text(const char* format, double a) {
   char buffer[120];
@@ -135,6 +144,7 @@ class Run {
   double last_checkpoint_ = 0, last_progress_ = -1;  // wall time [s]
   double start_time_ = 0, start_wall_ = 0;           // where this call took up the process
   std::uint64_t start_steps_ = 0;
+  double packing_cpu_seconds_ = 0;
   double packing_seconds_ = 0, force_seconds_ = 0, motion_seconds_ = 0, output_seconds_ = 0, checkpoint_seconds_ = 0;
   RunSummary summary_;
 };
@@ -146,6 +156,9 @@ void Run::prepare() {
   if (options_.mode == Continue::resume) {
     require_checkpoint(paths_.checkpoint, owner_);  // before a specimen of another scene is made to fit this one
     body = read_specimen(paths_.specimen);
+  } else if (!options_.packing.empty()) {
+    body = read_specimen(options_.packing);
+    perturb(body, scene_.perturbation);
   } else {
     body = make_specimen(scene_, options_.threads, [this](double share) {
       if (options_.stop && *options_.stop)
@@ -155,11 +168,13 @@ void Run::prepare() {
         options_.progress({"packing", share, 0, 0, 0, 0, 0, share > 0 ? last_progress_ * (1 / share - 1) : 0});
       }
     });
+    perturb(body, scene_.perturbation);
   }
   const SpecimenReport specimen = report_on(body, scene_.materials);
   if (options_.mode == Continue::fresh)
     for (const auto& line : specimen.lines) say(line);
   packing_seconds_ = clock_.seconds();
+  packing_cpu_seconds_ = thread_seconds();
   sim_.emplace(make_setup(scene_, body, options_.threads));
   sim_->require_stable_step();
 
@@ -332,6 +347,8 @@ RunSummary Run::whole() {
 
   const State& state = sim_->state();
   summary_.wall_seconds = clock_.seconds();
+  summary_.packing_seconds = packing_seconds_;
+  summary_.cpu_seconds = thread_seconds() - packing_cpu_seconds_;
   summary_.steps = state.steps - start_steps_;
   summary_.threads = sim_->setup().integration.threads;
   summary_.list_builds = state.contacts.builds;

@@ -26,6 +26,7 @@ struct Progress {
 struct RunOptions {
   std::filesystem::path folder;  ///< results; made when absent
   Continue mode = Continue::fresh;
+  std::filesystem::path packing;  ///< a specimen to start from instead of packing or importing; empty: none
   int threads = 1;
   std::string version;                            ///< written into the results
   std::function<void(const Progress&)> progress;  ///< called about four times a second; may be empty
@@ -41,6 +42,8 @@ struct RunSummary {
   };
   std::vector<Share> shares;
   double wall_seconds = 0;
+  double packing_seconds = 0;
+  double cpu_seconds = 0;  ///< of the calling thread after the packing: the whole process on one thread
   std::uint64_t steps = 0;
   int threads = 1;  ///< in use: at most those asked for, fewer for few particles
   std::size_t list_builds = 0;

@@ -9,6 +9,7 @@
 #include "dem/io/atomic_file.h"
 #include "dem/io/hdf5_file.h"
 #include "dem/io/particle_import.h"
+#include "dem/powder/random.h"
 
 namespace densify::dem {
 
@@ -121,6 +122,20 @@ PowderSample particles_of(const Scene& scene) {
     sample.material.push_back(material_index(scene, imported, k));
   }
   return sample;
+}
+
+void perturb(GreenBody& body, const PerturbationSettings& perturbation) {
+  if (perturbation.size == 0) return;
+  Random random(perturbation.seed);
+  Particles& p = body.particles;
+  std::vector<std::size_t> order(p.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p.id[a] < p.id[b]; });
+  for (const std::size_t k : order) {
+    for (int axis = 0; axis < 3; ++axis)
+      p.body[k].position[axis] += perturbation.size * p.reference_radius[k] * (2 * random.uniform() - 1);
+    if (body.cell.periodic) p.body[k].position = body.cell.wrap(p.body[k].position);
+  }
 }
 
 GreenBody make_specimen(const Scene& scene, int threads, const PackingProgress& progress) {

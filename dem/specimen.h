@@ -6,9 +6,12 @@
 
 namespace densify::dem {
 
-/// Draws and packs, or imports, what the scene asks for.  Throws InputError: empty powder, unreachable density,
-/// overlapping import, particle outside its container, ...
+/// Draws and packs, or imports, what the scene asks for, without its perturbation.  Throws InputError: empty powder,
+/// unreachable density, overlapping import, particle outside its container, ...
 GreenBody make_specimen(const Scene&, int threads, const PackingProgress&);
+
+/// Shifts every particle by up to `perturbation.size` of its radius along each axis, in the order of their numbers.
+void perturb(GreenBody&, const PerturbationSettings&);
 
 /// The diameters [m] and materials that the scene's powder or import asks for, without packing them.
 PowderSample particles_of(const Scene&);

@@ -63,6 +63,11 @@ Hdf5Id memory_access() {
 
 }  // namespace
 
+Hdf5Turn::Hdf5Turn() {
+  static std::recursive_mutex library;
+  turn_ = std::unique_lock(library);
+}
+
 Hdf5Reader::Hdf5Reader(std::filesystem::path path) : path_(std::move(path)) {
   silence();
   file_ = Hdf5Id(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);

@@ -1,9 +1,10 @@
 #pragma once
 // HDF5 files, written whole or not at all.  A small layer over the C API of HDF5 1.10, serial or parallel, that hides
-// it from every header.  The library is not thread-safe: one thread at a time may be in here.
+// it from every header.  The library need not be thread-safe: readers and writers of other threads wait for each other.
 
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +44,15 @@ class Hdf5Id {
   Close close_ = nullptr;
 };
 
+/// The turn of one thread in the library; a thread may hold several, for a reader beside a writer.
+class Hdf5Turn {
+ public:
+  Hdf5Turn();
+
+ private:
+  std::unique_lock<std::recursive_mutex> turn_;
+};
+
 /// Extent of a dataset: `columns` is 1 for a list.
 struct Hdf5Shape {
   std::size_t rows = 0, columns = 1;
@@ -72,6 +82,7 @@ class Hdf5Reader {
   std::int64_t id() const { return file_.get(); }
 
  private:
+  Hdf5Turn turn_;  // first to come, last to go
   std::filesystem::path path_;
   Hdf5Id file_;
 };
@@ -113,6 +124,7 @@ class Hdf5Writer {
              std::string_view unit);
   void write_attribute(const std::string& object, const std::string& name, std::int64_t type, const void* value);
 
+  Hdf5Turn turn_;  // first to come, last to go
   std::filesystem::path path_;
   Hdf5Id file_, make_groups_, no_times_;
 };

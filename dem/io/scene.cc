@@ -10,6 +10,10 @@ namespace {
 
 void visit(Section root, Scene& scene, ScenePlaces& places) {
   root.text("title", scene.title, Need::optional, "a line for results and reports");
+  root.integer(
+      "realisations", scene.realisations, 1, 100000, Need::optional,
+      "runs side by side, one a core: seeds of the packing counted up, or with specimen.perturbation its seeds; "
+      "the history is their mean");
   root.quantity("reference_temperature", scene.reference_temperature, dim::temperature, Range::positive(),
                 Need::optional, "at which sizes and densities are given");
   read_materials(root, scene, places);
@@ -55,6 +59,14 @@ Scene read_scene(const std::filesystem::path& path, const std::vector<std::strin
 
 Scene read_scene_text(std::string_view text, const std::vector<std::string>& overrides) {
   return read(SceneDocument::from_text(text, "scene.toml", overrides));
+}
+
+Scene with_overrides(const Scene& scene, const std::vector<std::string>& overrides) {
+  // The effective input reads back to the same scene bit for bit; the name of the file keeps relative paths right.
+  Scene changed = read(SceneDocument::from_text(scene.effective_text, scene.file.string(), overrides));
+  changed.file = scene.file;
+  changed.places = scene.places;
+  return changed;
 }
 
 std::string scene_help() {

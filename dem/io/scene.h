@@ -35,6 +35,12 @@ struct ImportSettings {
   double largest_overlap = 0.05;   ///< overlap over the smaller radius that is still accepted
 };
 
+/// Random shifts of the finished specimen: the same packing with another chaos.
+struct PerturbationSettings {
+  double size = 0;         ///< largest shift along each axis over the radius of the particle
+  std::uint64_t seed = 1;  ///< of the shifts
+};
+
 struct OutputSettings {
   double history_interval = unset;   ///< process time between rows [s]; unset: 1/400 of the process
   double snapshot_interval = unset;  ///< [s]; unset: at the ends of stages only
@@ -56,6 +62,8 @@ struct Scene {
   std::optional<Powder> powder;            ///< exactly one of powder and import
   std::optional<PackingSettings> packing;  ///< with a powder
   std::optional<ImportSettings> import;
+  PerturbationSettings perturbation;
+  int realisations = 1;  ///< runs side by side: other packings, or other perturbations of one specimen
   IntegrationSettings integration;
   Schedule schedule{293.15, 0.0, {{"", 1.0, 293.15, 0.0}}};
   std::vector<Load> loads;
@@ -75,6 +83,9 @@ struct Scene {
 /// Reads and checks a scene (a file, or a folder that holds scene.toml); overrides are "path.to.key=value".
 /// Throws InputError with file, line and key; FileError when the file or the shipped materials cannot be read.
 Scene read_scene(const std::filesystem::path&, const std::vector<std::string>& overrides);
+
+/// The same scene with other values; its file stays the place that messages name.
+Scene with_overrides(const Scene&, const std::vector<std::string>& overrides);
 
 /// The same from text, for tests.
 Scene read_scene_text(std::string_view text, const std::vector<std::string>& overrides);

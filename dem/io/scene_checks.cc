@@ -138,6 +138,11 @@ void check_container(const Scene& scene, const ScenePlaces& places) {
   if (periodic && !scene.integration.gravity.isZero(0)) {
     places.integration->fail("gravity", "a periodic cell has no bottom on which particles could rest; remove it");
   }
+  if (scene.realisations > 1 && !scene.powder && scene.perturbation.size == 0) {
+    places.perturbation->fail("size",
+                              "imported particles are the same in every realisation; give a size such as 1e-3 "
+                              "here, or leave realisations out");
+  }
   const WallMaterial& wall = scene.container.material;
   if (std::isnan(wall.youngs_modulus) != std::isnan(wall.poissons_ratio)) {
     places.walls->fail(std::isnan(wall.youngs_modulus) ? "youngs_modulus" : "poissons_ratio",

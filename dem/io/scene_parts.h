@@ -17,7 +17,7 @@ struct ScenePlaces {
   std::vector<Section> materials;   ///< in the order of Scene::materials
   std::vector<Section> interfaces;  ///< in the order of Scene::interfaces
   std::vector<Section> powders;     ///< in the order of the components
-  std::optional<Section> specimen, packing, import, cell, walls, contact, process, integration;
+  std::optional<Section> specimen, packing, import, perturbation, cell, walls, contact, process, integration;
 };
 
 // Each declares and reads its part; a document for help is visited once with defaults.  All throw InputError.

@@ -162,6 +162,14 @@ void read_specimen(Section& root, Scene& scene, ScenePlaces& places) {
       places.import = below;
       read_import(below, scene.import.emplace(), scene);
     });
+    section.section("perturbation", Need::defaulted, "random shifts of the finished specimen", [&](Section& below) {
+      places.perturbation = below;
+      below.quantity("size", scene.perturbation.size, dim::none, Range{0.0, 0.1, Bound::inclusive, Bound::inclusive},
+                     Need::optional,
+                     "largest shift along each axis over the radius of the particle; 1e-3 changes the "
+                     "trajectory and not the packing");
+      below.integer("seed", scene.perturbation.seed, 0, largest_seed, Need::optional, "of the shifts");
+    });
     read_size(section, container, powder);
     section.section("cell", Need::optional, "the periodic cell", [&](Section& below) {
       places.cell = below;

@@ -238,3 +238,13 @@ TEST(SceneMistakes, GravityInAPeriodicCell) {
             "--set integration.gravity=[\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]: a periodic cell has no bottom on "
             "which particles could rest; remove it");
 }
+
+TEST(SceneMistakes, RealisationsOfAnImport) {
+  const std::string due =
+      "scene.toml:3: specimen.perturbation.size: imported particles are the same in every realisation; give a size "
+      "such "
+      "as 1e-3 here, or leave realisations out";
+  EXPECT_EQ(message_of(kImport, {"realisations=4"}), due);
+  EXPECT_EQ(message_of(kImport, {"realisations=4", "specimen.perturbation.size=1e-3"}), "accepted");
+  EXPECT_EQ(message_of(kGood, {"realisations=4"}), "accepted");
+}
