@@ -10,7 +10,7 @@ struct RunCommand {
   std::string scene;
   std::string folder;                  ///< empty: results/NAME
   std::vector<std::string> overrides;  ///< path.to.key=value
-  int threads = 0;  ///< 0: one, or with several realisations one a core
+  int threads = 0;                     ///< 0: one, or with several realisations one a core
   bool resume = false;
   bool quiet = false;
 };

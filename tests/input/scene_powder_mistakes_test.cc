@@ -241,7 +241,7 @@ TEST(SceneMistakes, GravityInAPeriodicCell) {
 
 TEST(SceneMistakes, RealisationsOfAnImport) {
   const std::string due =
-      "scene.toml:3: specimen.perturbation.size: imported particles are the same in every realisation; give a size "
+      "scene.toml: specimen.perturbation.size: imported particles are the same in every realisation; give a size "
       "such "
       "as 1e-3 here, or leave realisations out";
   EXPECT_EQ(message_of(kImport, {"realisations=4"}), due);
