@@ -310,17 +310,23 @@ double Simulation::choose_step() {
   return left < 2 * state_.stable_step ? 0.5 * left : state_.stable_step;
 }
 
-void Simulation::evaluate(Recording* record) {
-  if (evaluated_) throw std::logic_error("Simulation::evaluate was called twice in one step");
+void Simulation::refresh() {
+  if (refreshed_) return;
   set_environment();
   keep_list_fresh();
+  refreshed_ = true;
+}
+
+void Simulation::evaluate(Recording* record) {
+  if (evaluated_) throw std::logic_error("Simulation::evaluate was called twice in one step");
+  refresh();
   compute_forces(record);
   evaluated_ = true;
 }
 
 void Simulation::move() {
   if (!evaluated_) throw std::logic_error("Simulation::move needs evaluate before it");
-  evaluated_ = false;
+  evaluated_ = refreshed_ = false;
   const double step = choose_step();
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   if (state_.punch.mass > 0) {
@@ -350,7 +356,7 @@ bool Simulation::all_at_equilibrium() const {
 }
 
 void Simulation::restore(State state) {
-  evaluated_ = false;
+  evaluated_ = refreshed_ = false;
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
   table_unsettled_ = true;
