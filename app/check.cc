@@ -46,8 +46,7 @@ int check(const dem::Scene& scene, const CheckCommand& command) {
   if (scene.integration.fixed_step > ahead.smallest_limit)
     fmt::print(
         "warning: integration.fixed_step is above the smallest critical step of this forecast; the run tests it "
-        "against "
-        "its packing before the first step and on the way, and stops where it is too large\n");
+        "against the packing before the first step and on the way, and stops where it is too large\n");
   fmt::print("the scene is valid\n");
   return 0;
 }

@@ -74,42 +74,67 @@ void grow_neck(Grain& g, const Scene& scene, const PairProperties& row, double m
   g.neck = std::min(std::pow(std::pow(g.neck, 6) + 6 * row.mobility_factor * r * drive * step, 1.0 / 6), row.sine * r);
 }
 
+/// The smallest grains and their surroundings along the schedule.
+class MeanField {
+ public:
+  MeanField(const Scene& scene, const PowderSample& powder)
+      : scene_(scene),
+        table_(scene.materials, scene.interfaces, scene.contact),
+        mean_radius_(volume_mean_radius(powder)),
+        grains_(smallest_grains(scene, powder, mean_radius_)) {
+    // The thesis's rule looks at one contact at a time; two spheres have only one.
+    const double others = double(powder.diameter.size()) - 1;
+    contacts_ = scene.integration.rule == StepRule::thesis ? 1.0 : std::clamp(others, 1.0, 3.0);
+    for (const Load& l : scene.loads) load_ = std::max(load_, l.force.norm());
+  }
+
+  /// Critical step at a process time, `elapsed` after the last call; without any, before the first neck [s].
+  double limit(double time, double elapsed) {
+    table_.update(scene_.schedule.temperature(time), time);
+    const double force = std::max(load_, scene_.schedule.pressure(time) * 4 * mean_radius_ * mean_radius_);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (Grain& g : grains_) {
+      const PairProperties& row = table_.row(g.material, g.material);
+      if (elapsed > 0 && scene_.contact.sintering && row.active) {
+        g.necked = true;
+        if (scene_.contact.sintering->model == SinteringModel::viscous)
+          grow_neck(g, scene_, row, mean_radius_, force, elapsed);
+      }
+      smallest = std::min(smallest, limit_of(g, scene_, row, mean_radius_, force, contacts_));
+    }
+    return smallest;
+  }
+
+ private:
+  const Scene& scene_;
+  PairTable table_;
+  double mean_radius_;  // [m]
+  std::vector<Grain> grains_;
+  double contacts_ = 0;
+  double load_ = 0;  // [N]
+};
+
 }  // namespace
 
 Forecast forecast(const Scene& scene, const PowderSample& powder, double at_start) {
-  const double mean_radius = volume_mean_radius(powder);
-  std::vector<Grain> grains = smallest_grains(scene, powder, mean_radius);
-  double load = 0;
-  for (const Load& l : scene.loads) load = std::max(load, l.force.norm());
+  MeanField field(scene, powder);
+  // A given specimen may hold its grains by more contacts than the mean field.
+  const double share = std::min(1.0, at_start / field.limit(0, 0));
   const IntegrationSettings& settings = scene.integration;
-  // The thesis's rule looks at one contact at a time; two spheres have only one.
-  const double contacts =
-      settings.rule == StepRule::thesis ? 1.0 : std::clamp(double(powder.diameter.size()) - 1, 1.0, 3.0);
-
-  PairTable table(scene.materials, scene.interfaces, scene.contact);
   Forecast result;
   result.smallest_limit = at_start;
   constexpr int parts = 50;  // of a stage
+  double begin = 0;
   for (std::size_t s = 0; s < scene.schedule.stages().size(); ++s) {
-    const double begin = s == 0 ? 0.0 : scene.schedule.stage_end(s - 1);
-    const double part = (scene.schedule.stage_end(s) - begin) / parts;
+    const double end = scene.schedule.stage_end(s), part = (end - begin) / parts;
     for (int k = 0; k < parts; ++k) {
-      const double time = begin + (k + 0.5) * part;
-      table.update(scene.schedule.temperature(time), time);
-      const double force = std::max(load, scene.schedule.pressure(time) * 4 * mean_radius * mean_radius);
-      double limit = at_start;
-      for (Grain& g : grains) {
-        const PairProperties& row = table.row(g.material, g.material);
-        g.necked = g.necked || (scene.contact.sintering && row.active);
-        if (g.necked && row.active && scene.contact.sintering->model == SinteringModel::viscous)
-          grow_neck(g, scene, row, mean_radius, force, part);
-        limit = std::min(limit, limit_of(g, scene, row, mean_radius, force, contacts));
-      }
+      const double limit = share * field.limit(begin + (k + 0.5) * part, part);
       result.smallest_limit = std::min(result.smallest_limit, limit);
       double step = std::isnan(settings.fixed_step) ? settings.step_safety * limit : settings.fixed_step;
       if (!std::isnan(settings.largest_step)) step = std::min(step, settings.largest_step);
       result.steps += part / step;
     }
+    begin = end;
   }
   return result;
 }
