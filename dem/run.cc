@@ -151,7 +151,7 @@ class Run {
 };
 
 void Run::prepare() {
-  folder_.emplace(options_.folder, options_.mode);
+  folder_.emplace(options_.folder, options_.mode, std::vector<std::string>{"checkpoint.h5"});
   owner_ = {fingerprint(scene_), options_.version};
   GreenBody body;
   if (options_.mode == Continue::resume) {

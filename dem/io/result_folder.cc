@@ -36,34 +36,37 @@ bool nothing_to_lose(const fs::path& folder) {
   return true;
 }
 
+}  // namespace
+
 /// Throws InputError unless a run may have the folder; true when it is there.
-bool require_free(const fs::path& folder, Continue mode) {
-  const std::string name = folder.string();
-  const bool there = fs::exists(folder), checkpoint = fs::exists(folder / "checkpoint.h5");
+bool ResultFolder::require_free(Continue mode) const {
+  const std::string name = folder_.string();
+  const bool there = fs::exists(folder_);
+  const bool begun =
+      std::any_of(marks_.begin(), marks_.end(), [&](const std::string& mark) { return fs::exists(folder_ / mark); });
   if (mode == Continue::resume) {
-    if (checkpoint) return true;
-    throw InputError("--resume: " + name +
-                     " holds no checkpoint.h5, so there is nothing to resume; start the run without --resume" +
-                     (there && !nothing_to_lose(folder) ? " in another folder" : ""));
+    if (begun) return true;
+    throw InputError("--resume: " + name + " holds no " + marks_.front() +
+                     ", so there is nothing to resume; start the run without --resume" +
+                     (there && !nothing_to_lose(folder_) ? " in another folder" : ""));
   }
   if (!there) return false;
-  if (!fs::is_directory(folder))
+  if (!fs::is_directory(folder_))
     throw InputError("--out " + name + ": this is a file, not a folder; choose another name");
-  if (!nothing_to_lose(folder))
+  if (!nothing_to_lose(folder_))
     throw InputError("--out " + name + ": the folder holds other results; nothing was changed.  Choose another " +
-                     (checkpoint ? "folder, or continue that run with --resume" : "folder, or empty this one"));
+                     (begun ? "folder, or continue that run with --resume" : "folder, or empty this one"));
   return true;
 }
 
-}  // namespace
-
-ResultFolder::ResultFolder(fs::path folder, Continue mode) : folder_(std::move(folder)) {
+ResultFolder::ResultFolder(fs::path folder, Continue mode, std::vector<std::string> marks)
+    : folder_(std::move(folder)), marks_(std::move(marks)) {
   try {
     if (fs::exists(folder_ / lock_name)) lock();  // a run at work is named before what it has written so far
-    if (!require_free(folder_, mode)) made_ = fs::create_directories(folder_);
+    if (!require_free(mode)) made_ = fs::create_directories(folder_);
     if (lock_.descriptor >= 0) return;
     lock();
-    require_free(folder_, mode);  // another run may have come and gone since the first look
+    require_free(mode);  // another run may have come and gone since the first look
   } catch (const fs::filesystem_error& error) {
     throw FileError(folder_.string() + ": cannot make or read this folder (" + error.code().message() +
                     "); choose another with --out");

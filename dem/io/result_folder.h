@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace densify::dem {
 
@@ -12,10 +14,11 @@ enum class Continue : std::uint8_t { fresh, resume };
 /// written, so that a program that was killed leaves no lock behind.
 class ResultFolder {
  public:
-  /// Makes the folder ready.  A fresh run takes an empty folder, or one of a run that ended before its first checkpoint
-  /// (a specimen and a history without rows); a resumed one needs a checkpoint.  Throws InputError and changes nothing
-  /// otherwise, also while another run holds the folder; FileError when the folder cannot be made.
-  ResultFolder(std::filesystem::path, Continue);
+  /// Makes the folder ready.  `marks`: names of which any, in the folder, says that a run has begun there, the usual
+  /// one first.  A fresh run takes an empty folder, or one of a run that had not begun (a specimen and a history
+  /// without rows); a resumed one needs a mark.  Throws InputError and changes nothing otherwise, also while another
+  /// run holds the folder; FileError when the folder cannot be made.
+  ResultFolder(std::filesystem::path, Continue, std::vector<std::string> marks);
 
   /// Removes the folder again if this object made it and nothing but the lock is in it.
   void abandon();
@@ -31,7 +34,10 @@ class ResultFolder {
   };
   void lock();
 
+  bool require_free(Continue) const;
+
   std::filesystem::path folder_;
+  std::vector<std::string> marks_;
   bool made_ = false;
   Lock lock_;
 };
