@@ -56,8 +56,11 @@ int check(const dem::Scene& scene, const CheckCommand& command) {
     fmt::print("critical step when pressed      {:.4g} s (forecast: {:.0f} contacts at {:.0f} % elastic overlap)\n",
                limit, contacts_when_pressed, 100 * elastic_overlap);
   }
-  const double step =
+  double step =
       std::isnan(scene.integration.fixed_step) ? scene.integration.step_safety * limit : scene.integration.fixed_step;
+  // The control knows its steps only when it runs: a third of the largest one was the mean in hot pressing.
+  if (!std::isnan(scene.integration.inertia_measure))
+    step = dem::step_control(scene.integration, scene.schedule).largest_step / 3;
   const double steps = scene.schedule.end() / step;
   const double bytes = n * (bytes_per_particle + (command.threads > 1 ? bytes_of_record : 0));
   fmt::print("process time                    {:.6g} s in {} stages, peak temperature {:.1f} K\n", scene.schedule.end(),
