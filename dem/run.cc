@@ -134,6 +134,7 @@ class Run {
   const RunOptions& options_;
   const Paths paths_;
   Stopwatch clock_;
+  std::optional<ResultFolder> folder_;
   std::optional<Simulation> sim_;
   std::optional<HistoryFile> history_;
   std::optional<ResultFile> results_;
@@ -141,19 +142,19 @@ class Run {
   CheckpointOwner owner_;
   HistoryMemory memory_;
   RunPosition position_;
-  bool folder_made_ = false;
   double last_snapshot_ = 0, next_row_ = 0, next_snapshot_ = 0;  // process time [s]
   double row_interval_ = 0, snapshot_interval_ = 0;
   double last_checkpoint_ = 0, last_progress_ = -1;  // wall time [s]
   double start_time_ = 0, start_wall_ = 0;           // where this call took up the process
   std::uint64_t start_steps_ = 0;
   double packing_cpu_seconds_ = 0;
-  double packing_seconds_ = 0, force_seconds_ = 0, motion_seconds_ = 0, output_seconds_ = 0, checkpoint_seconds_ = 0;
+  double packing_seconds_ = 0, list_seconds_ = 0, force_seconds_ = 0, motion_seconds_ = 0, output_seconds_ = 0,
+         checkpoint_seconds_ = 0;
   RunSummary summary_;
 };
 
 void Run::prepare() {
-  folder_made_ = open_result_folder(options_.folder, options_.mode);
+  folder_.emplace(options_.folder, options_.mode, std::vector<std::string>{"checkpoint.h5"});
   owner_ = {fingerprint(scene_), options_.version};
   GreenBody body;
   if (options_.mode == Continue::resume) {
@@ -285,7 +286,9 @@ void Run::report_progress() {
 void Run::loop() {
   Recording recording;
   const auto punch = sim_->wall("punch");
-  constexpr std::uint64_t watched = 32;  // every so many steps are timed, and the clock looked at
+  // Every so many steps are timed, and the clock looked at: a prime, so that what is done every limit_interval steps
+  // has its due share.
+  constexpr std::uint64_t watched = 31;
   const Schedule& schedule = scene_.schedule;
   const std::uint64_t first = sim_->state().steps;
   while (true) {
@@ -311,6 +314,11 @@ void Run::loop() {
     const std::size_t stage = schedule.stage_at(state.time);
     const bool breakpoint = state.steps == 0 || last || (stage > 0 && state.time == schedule.stage_end(stage - 1));
     const bool row = breakpoint || state.time >= next_row_ || state.time >= next_snapshot_;
+    if (look) {
+      const Stopwatch lists;
+      sim_->refresh();
+      list_seconds_ += watched * lists.seconds();
+    }
     const Stopwatch forces;
     sim_->evaluate(row ? &recording : nullptr);
     if (look) force_seconds_ += watched * forces.seconds();
@@ -330,8 +338,7 @@ RunSummary Run::whole() {
   try {
     prepare();
   } catch (...) {
-    std::error_code in_use;  // leaves no empty folder behind; one with files stays
-    if (folder_made_) fs::remove(options_.folder, in_use);
+    if (folder_) folder_->abandon();  // leaves no empty folder behind; one with files stays
     throw;
   }
   try {
@@ -359,10 +366,11 @@ RunSummary Run::whole() {
   summary_.end_time = state.time;
   // Sampled shares are scaled to the time that is not accounted for otherwise.
   const double rest = std::max(0.0, summary_.wall_seconds - packing_seconds_ - output_seconds_ - checkpoint_seconds_);
-  const double sampled = std::max(1e-12, force_seconds_ + motion_seconds_);
+  const double scale = rest / std::max(1e-12, list_seconds_ + force_seconds_ + motion_seconds_);
   summary_.shares = {{"packing", packing_seconds_},
-                     {"forces and neighbour lists", rest * force_seconds_ / sampled},
-                     {"motion and step limits", rest * motion_seconds_ / sampled},
+                     {"neighbour lists", scale * list_seconds_},
+                     {"forces", scale * force_seconds_},
+                     {"motion and step limits", scale * motion_seconds_},
                      {"measures and results", output_seconds_},
                      {"checkpoints", checkpoint_seconds_}};
   return summary_;

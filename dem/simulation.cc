@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/check.h"
 #include "dem/integrate/leapfrog.h"
@@ -71,6 +72,12 @@ bool activation_has_begun(const PairTable& table) {
     for (std::uint8_t b = a; b < table.materials(); ++b)
       if (table.row(a, b).activation_step) return true;
   return false;
+}
+
+std::string seconds(double t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g s", t);
+  return text;
 }
 
 double sphere_volume(double r) {
@@ -239,8 +246,8 @@ void Simulation::require_finite_positions() const {
   for (std::size_t p = 0; p < state_.particles.size(); ++p)
     if (!state_.particles.body[p].position.allFinite())
       throw RunError("the position of particle " + std::to_string(state_.particles.id[p]) +
-                     " is no longer finite at process time " + std::to_string(state_.time) +
-                     " s; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
+                     " is no longer finite at process time " + seconds(state_.time) +
+                     "; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
 }
 
 void Simulation::keep_list_fresh() {
@@ -298,9 +305,8 @@ void Simulation::require_stable_step() {
   if (std::isnan(fixed) || equalised()) return;
   const StepLimit limit = step_limit();
   if (fixed > limit.critical)
-    throw InputError("integration.fixed_step: " + std::to_string(fixed) + " s is above the stability limit of " +
-                     std::to_string(limit.critical) + " s (particle " +
-                     std::to_string(state_.particles.id[limit.particle]) +
+    throw InputError("integration.fixed_step: " + seconds(fixed) + " is above the stability limit of " +
+                     seconds(limit.critical) + " (particle " + std::to_string(state_.particles.id[limit.particle]) +
                      "); use a smaller one, a larger mass_scaling, or leave it out");
 }
 
@@ -368,10 +374,16 @@ void Simulation::equalise_inertia() {
     state_.stable_step = controlled_step(control_, state_.control, state_.stable_step);
 }
 
-void Simulation::evaluate(Recording* record) {
-  if (evaluated_) throw std::logic_error("Simulation::evaluate was called twice in one step");
+void Simulation::refresh() {
+  if (refreshed_) return;
   set_environment();
   keep_list_fresh();
+  refreshed_ = true;
+}
+
+void Simulation::evaluate(Recording* record) {
+  if (evaluated_) throw std::logic_error("Simulation::evaluate was called twice in one step");
+  refresh();
   if (equalised()) plan_equalised_step();
   compute_forces(record);
   evaluated_ = true;
@@ -379,7 +391,7 @@ void Simulation::evaluate(Recording* record) {
 
 void Simulation::move() {
   if (!evaluated_) throw std::logic_error("Simulation::move needs evaluate before it");
-  evaluated_ = false;
+  evaluated_ = refreshed_ = false;
   const double step = equalised() ? stiffness_.next_step : choose_step();
   if (equalised()) equalise_inertia();
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
@@ -414,7 +426,7 @@ bool Simulation::all_at_equilibrium() const {
 }
 
 void Simulation::restore(State state) {
-  evaluated_ = false;
+  evaluated_ = refreshed_ = false;
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
   table_unsettled_ = true;

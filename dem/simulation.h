@@ -93,6 +93,9 @@ class Simulation {
   /// Throws InputError when the setup is inconsistent (missing property, particle outside its container, ...).
   explicit Simulation(Setup setup);
 
+  /// What comes before the forces of a step: environment and neighbour lists at the present time.  `evaluate` does it;
+  /// who calls it before can tell the time of lists from that of forces.
+  void refresh();
   /// First half of a step: environment, lists and forces at the present time.  With `record` given it also fills it;
   /// the trajectory is the same with and without.  Once a step, since histories advance: a second call before `move`
   /// throws std::logic_error.  Throws RunError when the state is no longer sound.
@@ -151,6 +154,7 @@ class Simulation {
   PairTable table_;
   ForcePass pass_;
   State state_;
+  bool refreshed_ = false;       // between refresh() and move()
   bool evaluated_ = false;       // between evaluate() and move()
   bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
   StepStiffness stiffness_;      // equalised inertia only: of the last pass

@@ -28,10 +28,23 @@ void visit(Section root, Scene& scene, ScenePlaces& places) {
   read_output(root, scene);
 }
 
-Scene read(SceneDocument document) {
+/// A document in which every key of a scene is declared.
+SceneDocument all_keys() {
+  SceneDocument document = SceneDocument::for_help();
   Scene scene;
   ScenePlaces places;
   visit(document.root(), scene, places);
+  return document;
+}
+
+Scene read(SceneDocument document) {
+  Scene scene;
+  ScenePlaces places;
+  try {
+    visit(document.root(), scene, places);
+  } catch (const MissingKey& missing) {
+    throw InputError(missing.what() + missing.misspelling(all_keys().declared_keys()));
+  }
   document.reject_unknown();
   check_scene(scene, places);
   scene.effective_text = document.effective_text();
@@ -70,11 +83,7 @@ Scene with_overrides(const Scene& scene, const std::vector<std::string>& overrid
 }
 
 std::string scene_help() {
-  SceneDocument document = SceneDocument::for_help();
-  Scene scene;
-  ScenePlaces places;
-  visit(document.root(), scene, places);
-  return document.help_text();
+  return all_keys().help_text();
 }
 
 std::uint8_t material_index(const Section& section, std::string_view key, const std::string& name, const Scene& scene) {
@@ -104,10 +113,10 @@ std::string_view require_one(const Section& section, std::initializer_list<std::
     found.append(found.empty() ? "" : " and ").append(key);
     given = key;
   }
-  if (!section.documenting() && found != given) {
-    section.fail("", "needs exactly one of " + all + ", found " + (found.empty() ? "none" : found));
-  }
-  return given;
+  if (section.documenting() || found == given) return given;
+  const std::string problem = "needs exactly one of " + all + ", found ";
+  if (found.empty()) section.fail_missing(keys, problem + "none");
+  section.fail("", problem + found);
 }
 
 }  // namespace densify::dem
