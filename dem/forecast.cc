@@ -60,7 +60,9 @@ double limit_of(const Grain& g, const Scene& scene, const PairProperties& row, d
   });
   const double ratio = g.necked ? model.sintering->damping_ratio : model.damping_ratio;
   l.damper = 2 * ratio * std::sqrt(g.reduced_mass * l.stiffness);
-  l = with_tangential_share(l, model, g.reduced_mass);
+  const Linearisation across = tangential_share(l, model, g.reduced_mass);
+  l.stiffness = std::max(l.stiffness, across.stiffness);
+  l.damper = std::max(l.damper, across.damper);
   const double spring_limit = node_limit(g.mass, contacts * l.stiffness, contacts * l.damper);
   if (g.neck == 0) return spring_limit;
   const double viscosity = std::pow(g.neck, 4) / row.mobility_factor;
@@ -117,10 +119,15 @@ class MeanField {
 }  // namespace
 
 Forecast forecast(const Scene& scene, const PowderSample& powder, double at_start) {
+  const IntegrationSettings& settings = scene.integration;
+  if (!std::isnan(settings.inertia_measure)) {
+    // The control knows its steps only when it runs; three quarters of the largest one were the mean in hot pressing.
+    const double step = 0.75 * step_control(settings, scene.schedule).largest_step;
+    return {scene.schedule.end() / step, step};
+  }
   MeanField field(scene, powder);
   // A given specimen may hold its grains by more contacts than the mean field.
   const double share = std::min(1.0, at_start / field.limit(0, 0));
-  const IntegrationSettings& settings = scene.integration;
   Forecast result;
   result.smallest_limit = at_start;
   constexpr int parts = 50;  // of a stage
