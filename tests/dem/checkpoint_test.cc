@@ -155,7 +155,9 @@ TEST(Checkpoint, DamagedFileRefused) {
     changed[at] = char(changed[at] ^ (1 << (at % 8)));
     const auto message = refusal(folder / "d", changed, simulation);
     const bool in_format_number = at == std::string("Densify checkpoint, format ").size();
-    EXPECT_NE(message.find(in_format_number ? "has format" : damaged), std::string::npos) << at;
+    // A changed format number may still be a number.
+    const bool other_format = in_format_number && message.find("has format") != std::string::npos;
+    EXPECT_TRUE(other_format || message.find(damaged) != std::string::npos) << at;
   }
   EXPECT_NE(refusal(folder / "d", "time_s,stage\n0,press\n", simulation).find(damaged), std::string::npos);
 }

@@ -74,21 +74,34 @@ TEST(Neck, VanishesWhenPulledApart) {
   EXPECT_EQ(rows.front().neck.phase, NeckPhase::sintering);
 }
 
-// At the first activation pressed contacts fade in with a_0 = sqrt(r u/2) (4.30) and their elastic state; a contact
-// born later sinters at once from the smallest neck.
-TEST(Neck, PressedAndBorn) {
-  for (bool pressed : {true, false}) {
-    Law law = law_with(1e3, r);
-    law.activation_step = pressed;
-    NeckHistory h;
-    const double u = pressed ? -0.02 * r : -1e-6 * r;
-    const auto f = law.update(test::driver_input(pair, u, 0, 1e-3, 5), h);
-    EXPECT_EQ(h.phase, pressed ? NeckPhase::activating : NeckPhase::sintering);
-    EXPECT_NEAR(h.radius / r, pressed ? 0.1 : law.settings.starting_neck, 1e-12);
-    EXPECT_EQ(h.elastic, u);
-    EXPECT_NEAR(f.sintering, pressed ? 0 : f_sint(h.radius), 1e-18);
-    EXPECT_NEAR(f.total - f.sintering, stiffness * u, 1e-15);
-  }
+// At the first activation pressed contacts fade in with a_0 = sqrt(r u/2) (4.30) and their elastic state.
+TEST(Neck, Pressed) {
+  Law law = law_with(1e3, r);
+  law.activation_step = true;
+  NeckHistory h;
+  const double u = -0.02 * r;
+  const auto f = law.update(test::driver_input(pair, u, 0, 1e-3, 5), h);
+  EXPECT_EQ(h.phase, NeckPhase::activating);
+  EXPECT_NEAR(h.radius / r, 0.1, 1e-12);
+  EXPECT_EQ(h.elastic, u);
+  EXPECT_NEAR(f.sintering, 0, 1e-18);
+  EXPECT_NEAR(f.total, stiffness * u, 1e-15);
+}
+
+// A contact that touches in the middle of a step sinters from there on, from the smallest neck: a^2 = a_min^2 + 2 r |u|
+// (4.58), and backward Euler over the rest of the step, u_e = v dt/(1 + k dt/eta) with eta of the mean neck (4.40).
+TEST(Neck, BornWithinAStep) {
+  const Law law = law_with(1e3, r);
+  NeckHistory h;
+  constexpr double u = -1e-6 * r, step = 1e-3, rest = 0.5 * step;
+  const auto f = law.update(test::driver_input(pair, u, 2 * u, step, 5), h);
+  const double smallest = law.settings.starting_neck * r, grown = std::sqrt(smallest * smallest + 2 * r * -u);
+  const double middle = 0.5 * (smallest + grown), elastic = u / (1 + stiffness * rest / law.viscosity(middle));
+  EXPECT_EQ(h.phase, NeckPhase::sintering);
+  EXPECT_NEAR(h.radius, grown, 1e-12 * r);
+  EXPECT_NEAR(h.elastic, elastic, 1e-9 * std::abs(u));
+  EXPECT_NEAR(f.sintering, f_sint(middle), 1e-12 * f_sint(r));
+  EXPECT_NEAR(f.total - f.sintering, stiffness * elastic, 1e-9 * stiffness * std::abs(u));
 }
 
 // Largest change of force from one step to the next in a history of activation (100 s), cooling before its end (150 s),

@@ -28,7 +28,7 @@ forecast lattice.toml
 forecast small_press.toml
 for scene in scene scene_process_2 scene_second_reading; do
   forecast "$examples/hot_press_nial/$scene.toml" --set powder.1.number=500 --set 'specimen.diameter=46 um' \
-    --set integration.mass_scaling=1e19
+    --set specimen.packing.green_density=0.64 --set integration.mass_scaling=1e19
 done
 forecast "$examples/two_copper_spheres/scene.toml" --set integration.mass_scaling=1e17
 forecast "$examples/two_copper_spheres/scene_under_force.toml"

@@ -44,6 +44,7 @@ a, b = (h5py.File(p, "r") for p in sys.argv[1:3])
 names = []
 a.visititems(lambda n, o: names.append(n) if isinstance(o, h5py.Dataset) else None)
 def same(x, y):  # numbers bit for bit (NaN included), texts by content
+    x, y = numpy.asarray(x), numpy.asarray(y)
     return x.tolist() == y.tolist() if x.dtype == object else x.tobytes() == y.tobytes()
 different = [n for n in names if not same(a[n][()], b[n][()])]
 if not names or different:
