@@ -35,7 +35,8 @@ int check(const dem::Scene& scene, const CheckCommand& command) {
   const dem::Forecast ahead = dem::forecast(scene, powder, at_start);
   fmt::print("process time                    {:.6g} s in {} stages, peak temperature {:.1f} K\n", scene.schedule.end(),
              scene.schedule.stages().size(), scene.schedule.peak_temperature());
-  fmt::print("smallest critical step          about {:.2g} s\n", ahead.smallest_limit);
+  if (std::isfinite(ahead.smallest_limit))
+    fmt::print("smallest critical step          about {:.2g} s\n", ahead.smallest_limit);
   fmt::print("steps                           about {:.2g} of {:.2g} s on average\n", ahead.steps,
              scene.schedule.end() / ahead.steps);
   const double bytes = n * (bytes_per_particle + (command.threads > 1 ? bytes_of_record : 0));

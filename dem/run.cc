@@ -87,8 +87,11 @@ std::string derived_text(const Scene& scene, Simulation& sim, const SpecimenRepo
   out << "\n# Derived numbers\n";
   out << "# particles = " << sim.state().particles.size() << "\n";
   out << "# solid volume = " << sim.solid_volume() << " m^3\n";
-  out << "# powder mass = " << real << " kg, as integrated (mass scaling " << scene.integration.mass_scaling
-      << ") = " << real * scene.integration.mass_scaling << " kg\n";
+  out << "# powder mass = " << real << " kg";
+  if (!sim.equalised())
+    out << ", as integrated (mass scaling " << scene.integration.mass_scaling
+        << ") = " << real * scene.integration.mass_scaling << " kg";
+  out << "\n";
   const Vec3& size = sim.setup().container.size;
   out << "# container = " << size[0] << " x " << size[1] << " x " << size[2] << " m\n";
   if (sim.state().punch.mass > 0)
@@ -103,7 +106,7 @@ std::string derived_text(const Scene& scene, Simulation& sim, const SpecimenRepo
           << f.activation_temperature << " K; D_eff(" << peak << " K) = " << f.diffusion.effective(peak)
           << " m^5/(N s)\n";
     }
-  out << "# critical step at the start = " << sim.step_limit().critical << " s\n";
+  if (!sim.equalised()) out << "# critical step at the start = " << sim.step_limit().critical << " s\n";
   for (const auto& line : specimen.lines) out << "# specimen: " << line << "\n";
   out << "# densify " << version() << " (" << git_revision() << ")\n";
   return out.str();

@@ -79,6 +79,17 @@ double sphere_volume(double r) {
 
 }  // namespace
 
+StepControl step_control(const IntegrationSettings& settings, const Schedule& schedule) {
+  constexpr double share_of_process = 1e-3, span = 200, share_of_peak = 0.01;
+  StepControl c;
+  c.measure = settings.inertia_measure;
+  c.largest_step = std::isnan(settings.largest_step) ? share_of_process * schedule.end() : settings.largest_step;
+  c.smallest_step = std::isnan(settings.smallest_step) ? c.largest_step / span : settings.smallest_step;
+  for (const Stage& stage : schedule.stages())
+    c.pressure_floor = std::max(c.pressure_floor, share_of_peak * stage.end_pressure);
+  return c;
+}
+
 Simulation::Simulation(Setup setup)
     : setup_(std::move(setup)),
       table_(setup_.materials, setup_.interfaces, setup_.contact),
@@ -128,6 +139,7 @@ Simulation::Simulation(Setup setup)
     state_.punch.mass = setup_.container.punch_settings.mass_fraction * setup_.integration.mass_scaling * powder_mass;
     state_.punch.area = punch_area();
   }
+  if (equalised()) control_ = step_control(setup_.integration, setup_.schedule);
   Vec3 unused;
   for (const auto& w : state_.walls.wall)
     for (std::size_t p = 0; p < n; ++p)
@@ -154,7 +166,8 @@ double Simulation::punch_area() const {
 }
 
 double Simulation::real_mass(std::size_t p) const {
-  return 1 / (state_.particles.body[p].inverse_mass * setup_.integration.mass_scaling);
+  const Particles& particles = state_.particles;
+  return setup_.materials[particles.material[p]].density * sphere_volume(particles.reference_radius[p]);
 }
 
 double Simulation::solid_volume() const {
@@ -257,11 +270,12 @@ void Simulation::prune_near(double list_age) {
 
 void Simulation::compute_forces(Recording* record) {
   const PassTime clock{state_.time, state_.last_step};
+  StepStiffness* const stiffness = equalised() ? &stiffness_ : nullptr;
   pass_.compute(state_.particles, state_.contacts, state_.cell, table_, expansion_step_, clock,
-                record ? &record->contact : nullptr);
+                record ? &record->contact : nullptr, stiffness);
   if (!state_.walls.wall.empty())
     state_.walls.compute(state_.particles, table_, setup_.contact, expansion_step_, clock,
-                         record ? &record->wall : nullptr);
+                         record ? &record->wall : nullptr, stiffness);
   else if (record)
     record->wall.clear();
   for (const auto& load : setup_.loads) {
@@ -281,7 +295,7 @@ StepLimit Simulation::step_limit() {
 
 void Simulation::require_stable_step() {
   const double fixed = setup_.integration.fixed_step;
-  if (std::isnan(fixed)) return;
+  if (std::isnan(fixed) || equalised()) return;
   const StepLimit limit = step_limit();
   if (fixed > limit.critical)
     throw InputError("integration.fixed_step: " + std::to_string(fixed) + " s is above the stability limit of " +
@@ -317,9 +331,52 @@ void Simulation::refresh() {
   refreshed_ = true;
 }
 
+void Simulation::plan_equalised_step() {
+  const auto& settings = setup_.integration;
+  if (state_.stable_step == 0) {
+    state_.stable_step = std::isnan(settings.fixed_step) ? control_.smallest_step : settings.fixed_step;
+    // The first pass needs masses for its dampers.
+    stiffness_.next_step = state_.stable_step;
+    stiffness_.of.assign(state_.particles.size(), StiffnessSum{});
+    equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety, 0, settings.threads);
+  }
+  state_.critical_step = state_.stable_step / settings.step_safety;
+  // Breakpoints of the schedule are met exactly: the last steps before one share the way.
+  constexpr double sharing = 10;
+  const double left = setup_.schedule.next_breakpoint(state_.time) - state_.time;
+  const double steps = std::max(1.0, std::ceil(left / state_.stable_step * (1 - 1e-12)));
+  stiffness_.next_step = steps <= sharing ? left / steps : state_.stable_step;
+}
+
+Column Simulation::column() const {
+  const double bottom = state_.walls.wall[*wall("bottom")].point[2];
+  return {bottom, state_.walls.wall[*punch_wall_].point[2] - bottom};
+}
+
+void Simulation::equalise_inertia() {
+  const auto& settings = setup_.integration;
+  Punch& punch = state_.punch;
+  equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety,
+           punch.mass > 0 ? carriage_share : 0.0, settings.threads);
+  if (punch.mass > 0) {
+    const double k = column_stiffness(state_.particles, stiffness_, column());
+    // Its own damper has one end in the world and counts half as much as one between two masses.
+    const double with_damper = (1 + 1 / carriage_share) * k + 2 * punch.damping / stiffness_.next_step;
+    const double mass = 0.5 * mass_for_step(with_damper, stiffness_.next_step, settings.step_safety);
+    if (mass > 0) punch.mass = mass;
+    punch.tune(k, setup_.container.punch_settings.damping_ratio);
+  }
+  if (state_.steps % control_interval != 0) return;
+  const double pressure = std::max(contact_pressure(state_.particles, stiffness_), control_.pressure_floor);
+  measure_inertia(state_.control, state_.particles, state_.cell, pressure);
+  if (std::isnan(settings.fixed_step))
+    state_.stable_step = controlled_step(control_, state_.control, state_.stable_step);
+}
+
 void Simulation::evaluate(Recording* record) {
   if (evaluated_) throw std::logic_error("Simulation::evaluate was called twice in one step");
   refresh();
+  if (equalised()) plan_equalised_step();
   compute_forces(record);
   evaluated_ = true;
 }
@@ -327,10 +384,15 @@ void Simulation::evaluate(Recording* record) {
 void Simulation::move() {
   if (!evaluated_) throw std::logic_error("Simulation::move needs evaluate before it");
   evaluated_ = refreshed_ = false;
-  const double step = choose_step();
+  const double step = equalised() ? stiffness_.next_step : choose_step();
+  if (equalised()) equalise_inertia();
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   if (state_.punch.mass > 0) {
-    state_.punch.kick(state_.walls.normal_force()[*punch_wall_], pressure(), kick_step);
+    const double before = state_.punch.velocity;
+    double force = state_.walls.normal_force()[*punch_wall_];
+    if (equalised()) force += column_force(state_.particles, column());
+    state_.punch.kick(force, pressure(), kick_step);
+    if (equalised()) carry(state_.particles, column(), state_.punch.velocity - before, setup_.integration.threads);
     state_.walls.wall[*punch_wall_].velocity = Vec3(0, 0, state_.punch.velocity);
   }
   leapfrog(state_.particles, state_.cell, {kick_step, step}, setup_.integration.drag, setup_.integration.threads);

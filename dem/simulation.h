@@ -6,6 +6,8 @@
 
 #include "base/schedule.h"
 #include "dem/boundary/punch.h"
+#include "dem/integrate/inertia.h"
+#include "dem/integrate/step_control.h"
 #include "dem/integrate/time_step.h"
 
 namespace densify::dem {
@@ -32,13 +34,16 @@ struct Load {
 struct IntegrationSettings {
   StepRule rule = StepRule::particle_sum;
   double step_safety = 0.8;
-  double fixed_step = unset;    ///< replaces the rule [s]
-  double largest_step = unset;  ///< [s]
-  int limit_interval = 20;      ///< steps between two evaluations of the limit
-  double mass_scaling = 1;      ///< alpha_m (4.80)
-  double skin = 0.2;            ///< reach of the neighbour list over the mean radius
-  double drag = 0;              ///< mass-proportional damping rate [1/s], for packing
-  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
+  Inertia inertia = Inertia::uniform;
+  double fixed_step = unset;       ///< replaces the rule; with equalised inertia the step dt* of the whole run [s]
+  double largest_step = unset;     ///< [s]
+  double smallest_step = unset;    ///< of the step control [s]; unset: largest_step / 200
+  double inertia_measure = unset;  ///< inertial number that the step control of equalised inertia keeps
+  int limit_interval = 20;         ///< steps between two evaluations of the limit
+  double mass_scaling = 1;         ///< alpha_m (4.80)
+  double skin = 0.2;               ///< reach of the neighbour list over the mean radius
+  double drag = 0;                 ///< mass-proportional damping rate [1/s], for packing
+  Vec3 gravity = Vec3::Zero();     ///< [m/s^2]
   int threads = 1;
 };
 
@@ -71,6 +76,7 @@ struct State {
   double critical_step = 0;       ///< [s]
   std::uint64_t steps = 0;
   std::vector<double> active_since;  ///< of each pair of materials [s]
+  ControlState control;              ///< equalised inertia only
 };
 
 /// What a measure reads after a recorded pass.
@@ -78,6 +84,9 @@ struct Recording {
   std::vector<ContactRecord> contact;
   std::vector<WallRecord> wall;
 };
+
+/// The limits of the step control that a scene's integration leaves open.
+StepControl step_control(const IntegrationSettings&, const Schedule&);
 
 class Simulation {
  public:
@@ -104,6 +113,7 @@ class Simulation {
   /// Throws InputError when a fixed step is above the present limit.
   void require_stable_step();
 
+  bool equalised() const { return setup_.integration.inertia == Inertia::equalised; }
   bool finished() const { return state_.time >= setup_.schedule.end(); }
   /// True when every neck of a packing that has necks is at equilibrium.
   bool all_at_equilibrium() const;
@@ -133,6 +143,9 @@ class Simulation {
   void keep_list_fresh();
   void compute_forces(Recording* record);
   double choose_step();
+  void plan_equalised_step();
+  void equalise_inertia();
+  Column column() const;
   void rebuild_lists();
   void prune_near(double list_age);
   void require_finite_positions() const;
@@ -144,7 +157,9 @@ class Simulation {
   bool refreshed_ = false;       // between refresh() and move()
   bool evaluated_ = false;       // between evaluate() and move()
   bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
-  double list_slack_ = 0;        // what may be travelled since the last pruning before the list can be too old [m]
+  StepStiffness stiffness_;      // equalised inertia only: of the last pass
+  StepControl control_;
+  double list_slack_ = 0;  // what may be travelled since the last pruning before the list can be too old [m]
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
 };

@@ -84,10 +84,15 @@ NormalInput wall_input(const Body& b, double gap, double rate, PassTime clock) {
 }  // namespace
 
 void Walls::compute(Particles& particles, const PairTable& table, const ContactModel& model,
-                    const std::vector<double>& expansion_step, PassTime clock, std::vector<WallRecord>* record) {
+                    const std::vector<double>& expansion_step, PassTime clock, std::vector<WallRecord>* record,
+                    StepStiffness* step_stiffness) {
   force_.assign(wall.size(), Vec3::Zero());
   normal_force_.assign(wall.size(), 0);
   if (record) record->clear();
+  if (step_stiffness) {
+    stiffness_.assign(wall.size(), 0);
+    step_stiffness_.assign(wall.size(), 0);
+  }
   moduli_.resize(table.materials());
   for (std::size_t m = 0; m < moduli_.size(); ++m) moduli_[m] = modulus(table, model, std::uint8_t(m));
   Vec3 n;
@@ -125,13 +130,25 @@ void Walls::compute(Particles& particles, const PairTable& table, const ContactM
       particles.force[c.particle] += f;
       force_[c.wall] -= f;
       normal_force_[c.wall] -= fn;
+      if (step_stiffness) {
+        const double k = law.spring.tangent(in.overlap, in.elastic_radius);
+        const double along = law.step_stiffness(in, step_stiffness->next_step);
+        const double across =
+            model.friction ? tangential_step_stiffness(*model.friction, k, in.reduced_mass, step_stiffness->next_step)
+                           : 0.0;
+        StiffnessSum& sum = step_stiffness->of[c.particle];
+        sum.add(along, across, n);
+        sum.force += std::abs(fn);
+        stiffness_[c.wall] += k;
+        step_stiffness_[c.wall] += along;
+      }
       if (record) record->push_back({c.particle, c.wall, f, g * n, law.spring.energy(in.overlap, in.elastic_radius)});
     });
   }
 }
 
 void Walls::add_stiffness(const Particles& particles, const PairTable& table, const ContactModel& model,
-                          std::vector<double>& stiffness, std::vector<double>& damping) {
+                          std::vector<StiffnessSum>& stiffness, std::vector<StiffnessSum>& damping) {
   stiffness_.assign(wall.size(), 0);
   damping_.assign(wall.size(), 0);
   Vec3 n;
@@ -141,9 +158,9 @@ void Walls::add_stiffness(const Particles& particles, const PairTable& table, co
     if (g >= b.radius) continue;
     const NormalInput in = wall_input(b, g, 0, {0, 0});
     with_wall_law(model, modulus(table, model, particles.material[c.particle]), [&](const auto& law) {
-      const Linearisation l = law.linearise(in), whole = with_tangential_share(l, model, in.reduced_mass);
-      stiffness[c.particle] += whole.stiffness;
-      damping[c.particle] += whole.damper;
+      const Linearisation l = law.linearise(in), across = tangential_share(l, model, in.reduced_mass);
+      stiffness[c.particle].add(l.stiffness, across.stiffness, n);
+      damping[c.particle].add(l.damper, across.damper, n);
       stiffness_[c.wall] += l.stiffness;
       damping_[c.wall] += l.damper;
     });

@@ -57,9 +57,10 @@ class Walls {
   /// Throws RunError when a particle's centre is beyond a wall.
   void rebuild(const Particles&, double skin);
 
-  /// Adds the wall forces to the particles and sums them per wall.
+  /// Adds the wall forces to the particles and sums them per wall; with `step_stiffness` given, adds to its sums too
+  /// and makes stiffness() and step_stiffness() those of this pass.
   void compute(Particles&, const PairTable&, const ContactModel&, const std::vector<double>& expansion_step, PassTime,
-               std::vector<WallRecord>* record);
+               std::vector<WallRecord>* record, StepStiffness* step_stiffness);
 
   /// Share of the skin that wall motion since the last rebuild has used up, on its own.
   double age(double skin) const;
@@ -68,13 +69,15 @@ class Walls {
   const std::vector<Vec3>& force() const { return force_; }
   /// Sum of the normal force components on each wall, pushing outward positive [N].
   const std::vector<double>& normal_force() const { return normal_force_; }
-  /// Sum of tangent stiffness over each wall's contacts in the last call of `add_stiffness` [N/m].
+  /// Sum of tangent stiffness over each wall's contacts in the last call of `add_stiffness` or such a pass [N/m].
   const std::vector<double>& stiffness() const { return stiffness_; }
   const std::vector<double>& damping() const { return damping_; }
+  /// Sum of the contacts' share in StepStiffness over each wall [N/m].
+  const std::vector<double>& step_stiffness() const { return step_stiffness_; }
 
   /// Adds stiffness and damping of the wall contacts to the particles' sums, for the time step limit.
-  void add_stiffness(const Particles&, const PairTable&, const ContactModel&, std::vector<double>& stiffness,
-                     std::vector<double>& damping);
+  void add_stiffness(const Particles&, const PairTable&, const ContactModel&, std::vector<StiffnessSum>& stiffness,
+                     std::vector<StiffnessSum>& damping);
 
   std::vector<WallContact>& contacts() { return contacts_; }
   const std::vector<WallContact>& contacts() const { return contacts_; }
@@ -88,7 +91,7 @@ class Walls {
   std::vector<WallContact> contacts_;
   std::vector<Wall> reference_;  // walls when the contacts were listed
   std::vector<Vec3> force_;
-  std::vector<double> normal_force_, stiffness_, damping_;
+  std::vector<double> normal_force_, stiffness_, damping_, step_stiffness_;
   std::vector<double> moduli_;  // of each material against the walls, of the last pass [Pa]
 };
 

@@ -81,6 +81,10 @@ struct Bucket {
   double growth_a, growth_b;  // relative growth rate of the radii of both materials since the last pass [1/s]
   std::uint8_t material_a;
   PassTime clock;
+  // Only with stiffness sums asked for, one of the two: for the particles, or for each near pair.
+  StiffnessSum* stiffness;
+  StiffnessShare* stiffness_shares;
+  double next_step;  // [s]
 
   /// What heat adds to the pair's distance at rest, mean since the last pass [m/s].
   double grown(std::uint32_t i, const Body& a, const Body& b, double overlap, bool necked) const {
@@ -88,6 +92,14 @@ struct Bucket {
     return thermal_growth(a, b, overlap, swapped ? growth_b : growth_a, swapped ? growth_a : growth_b, necked);
   }
 };
+
+template <class Law>
+double step_stiffness(const Bucket<Law>& c, const NormalInput& in, std::uint32_t place) {
+  if constexpr (has_necks<Law>)
+    return c.law.step_stiffness(in, c.neck[place], c.next_step);
+  else
+    return c.law.step_stiffness(in, c.next_step);
+}
 
 /// The near pair at `index`.  Uniform features (periodic or deforming cell, thermal growth) are branches; law, friction
 /// and sink are not.
@@ -105,6 +117,7 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
   if (d2 >= reach * reach && !necked) {
     if constexpr (with_friction) c.tangential[place].setZero();
     sink.skip(pair);
+    if (c.stiffness_shares) c.stiffness_shares[index] = {Vec3::Zero(), 0, 0, 0};
     return;
   }
   const double d = std::sqrt(d2);
@@ -154,6 +167,22 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
       result.couple = n.cross(ft);
     } else {
       slip.setZero();
+    }
+  }
+  if (c.next_step > 0) {
+    const double along = step_stiffness(c, in, place);
+    double across = 0;
+    if constexpr (with_friction)
+      across = tangential_step_stiffness(c.friction, spring_of(c.law).tangent(in.overlap, in.elastic_radius),
+                                         in.reduced_mass, c.next_step);
+    const double force = std::max(std::abs(f.total), f.sintering);
+    if (c.stiffness_shares) {
+      c.stiffness_shares[index] = {n, along, across, force};
+    } else {
+      for (const std::uint32_t p : {i, j}) {
+        c.stiffness[p].add(along, across, n);
+        c.stiffness[p].force += force;
+      }
     }
   }
   if constexpr (Sink::records) {
@@ -219,7 +248,7 @@ void ForcePass::near_changed(const ContactList& list, std::size_t particles) {
 }
 
 // Adds in the order in which the direct sink would, so that the sums are the same bit for bit.
-void ForcePass::gather(Particles& particles) const {
+void ForcePass::gather(Particles& particles, StepStiffness* stiffness) const {
   const bool rotates = !particles.torque.empty();
   in_parts(particles.size(), threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
@@ -235,6 +264,13 @@ void ForcePass::gather(Particles& particles) const {
       }
       particles.force[p] = force;
       if (rotates) particles.torque[p] = torque;
+      if (!stiffness) continue;
+      StiffnessSum& sum = stiffness->of[p];
+      for (std::size_t q = incidence_begin_[p]; q < incidence_begin_[p + 1]; ++q) {
+        const StiffnessShare& c = stiffness_shares_[incidence_[q] >> 1];
+        sum.add(c.along, c.across, c.normal);
+        sum.force += c.force;
+      }
     }
   });
 }
@@ -259,9 +295,10 @@ void ForcePass::add_recorded(Particles& particles, const ContactList& list, cons
 template <class Law>
 void ForcePass::run_bucket(const Law& law, std::size_t number, Particles& particles, ContactList& list,
                            const Cell& cell, const std::vector<double>& expansion_step, PassTime clock,
-                           std::vector<ContactRecord>* record) {
+                           std::vector<ContactRecord>* record, StepStiffness* stiffness) {
   const auto& named = list.buckets[number];
   auto growth = [&](std::uint8_t m) { return clock.step > 0 ? expansion_step[m] / clock.step : 0.0; };
+  const bool shared = stiffness && threads_ > 1;
   const Bucket<Law> bucket{law,
                            model_.friction.value_or(FrictionModel{}),
                            model_.hertz_radius,
@@ -279,7 +316,10 @@ void ForcePass::run_bucket(const Law& law, std::size_t number, Particles& partic
                            growth(named.material_a),
                            growth(named.material_b),
                            named.material_a,
-                           clock};
+                           clock,
+                           stiffness && !shared ? stiffness->of.data() : nullptr,
+                           shared ? stiffness_shares_.data() : nullptr,
+                           stiffness ? stiffness->next_step : 0.0};
   const std::size_t first = number == 0 ? 0 : near_.bucket_end()[number - 1];
   const std::size_t count = near_.bucket_end()[number] - first;
   auto with = [&](const auto& sink, int threads) {
@@ -299,7 +339,8 @@ void ForcePass::run_bucket(const Law& law, std::size_t number, Particles& partic
 }
 
 void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cell, const PairTable& table,
-                        const std::vector<double>& expansion_step, PassTime clock, std::vector<ContactRecord>* record) {
+                        const std::vector<double>& expansion_step, PassTime clock, std::vector<ContactRecord>* record,
+                        StepStiffness* stiffness) {
   if (near_.empty()) {
     near_.take_all(list);
     near_changed(list, particles.size());
@@ -309,13 +350,17 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
     shifts_h_ = cell.h;
   }
   if (record) record->assign(list.size(), ContactRecord{});
+  if (stiffness) stiffness->of.assign(particles.size(), StiffnessSum{});
+  if (stiffness && threads_ > 1) stiffness_shares_.resize(near_.places().size());
   if (threads_ == 1) {
     std::fill(particles.force.begin(), particles.force.end(), Vec3(Vec3::Zero()));
     std::fill(particles.torque.begin(), particles.torque.end(), Vec3(Vec3::Zero()));
   }
   for (std::size_t b = 0; b < list.buckets.size(); ++b) {
     const PairProperties& row = table.row(list.buckets[b].material_a, list.buckets[b].material_b);
-    auto run = [&](const auto& law) { run_bucket(law, b, particles, list, cell, expansion_step, clock, record); };
+    auto run = [&](const auto& law) {
+      run_bucket(law, b, particles, list, cell, expansion_step, clock, record, stiffness);
+    };
     with_spring(model_, row, [&](const auto& spring) {
       using Spring = std::decay_t<decltype(spring)>;
       if (list.neck.empty())
@@ -325,12 +370,12 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
     });
   }
   if (record) add_recorded(particles, list, *record);
-  if (threads_ > 1) gather(particles);
+  if (threads_ > 1) gather(particles, stiffness);
 }
 
 std::size_t ForcePass::bytes() const {
-  return near_.bytes() + shares_.capacity() * sizeof(Share) + incidence_.capacity() * sizeof(std::uint32_t) +
-         incidence_begin_.capacity() * sizeof(std::size_t);
+  return near_.bytes() + shares_.capacity() * sizeof(Share) + stiffness_shares_.capacity() * sizeof(StiffnessShare) +
+         incidence_.capacity() * sizeof(std::uint32_t) + incidence_begin_.capacity() * sizeof(std::size_t);
 }
 
 NormalInput normal_input(const ContactModel& model, const Particles& particles, const ContactList& list,

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "dem/contact/near_list.h"
+#include "dem/contact/step_stiffness.h"
 #include "dem/material/pair_table.h"
 
 namespace densify::dem {
@@ -29,14 +30,14 @@ struct ContactRecord {
 /// Computes forces (and torques) of all pairs into Particles::force (::torque), overwriting them.
 ///
 /// `expansion_step[m]` is the relative growth of the radius of material m since the last pass, (r_new - r_old)/r_new.
-/// With `record` given the pass also fills it, one entry a pair; forces are bit for bit the same with and without it,
-/// and for every number of threads.
+/// With `record` given the pass also fills it, one entry a pair, and with `stiffness` given its sums for its next_step;
+/// forces are bit for bit the same with and without them, and all is for every number of threads.
 class ForcePass {
  public:
   ForcePass(const ContactModel& model, int threads) : model_(model), threads_(threads) {}
 
   void compute(Particles&, ContactList&, const Cell&, const PairTable&, const std::vector<double>& expansion_step,
-               PassTime, std::vector<ContactRecord>* record);
+               PassTime, std::vector<ContactRecord>* record, StepStiffness* stiffness);
 
   /// To be called after every rebuild of the list; the next passes visit all its pairs until near() is pruned.
   void list_changed(const ContactList&, std::size_t particles);
@@ -60,9 +61,10 @@ class ForcePass {
 
   template <class Law>
   void run_bucket(const Law&, std::size_t bucket, Particles&, ContactList&, const Cell&,
-                  const std::vector<double>& expansion_step, PassTime, std::vector<ContactRecord>* record);
+                  const std::vector<double>& expansion_step, PassTime, std::vector<ContactRecord>* record,
+                  StepStiffness* stiffness);
   void add_recorded(Particles&, const ContactList&, const std::vector<ContactRecord>&);
-  void gather(Particles&) const;
+  void gather(Particles&, StepStiffness* stiffness) const;
 
   ContactModel model_;
   int threads_;
@@ -70,8 +72,9 @@ class ForcePass {
   std::optional<ImageShifts> shifts_;  // of the cell below
   Mat3 shifts_h_ = Mat3::Zero();       // [m]
   // Several threads only:
-  std::vector<Share> shares_;             // of each near pair
-  std::vector<std::uint32_t> incidence_;  // near pair << 1 | side, ascending for each particle
+  std::vector<Share> shares_;                     // of each near pair
+  std::vector<StiffnessShare> stiffness_shares_;  // only when asked for
+  std::vector<std::uint32_t> incidence_;          // near pair << 1 | side, ascending for each particle
   std::vector<std::size_t> incidence_begin_;
 };
 

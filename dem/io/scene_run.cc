@@ -41,10 +41,19 @@ void read_integration(Section& root, Scene& scene, ScenePlaces& places) {
                    Need::optional, "limit from the sums over each particle's contacts, or pair by pair (4.71)-(4.75)");
     section.quantity("step_safety", s.step_safety, dim::none, share, Need::optional,
                      "beta, step over the limit (4.76)");
+    section.choice("inertia", s.inertia, {{"uniform", Inertia::uniform}, {"equalised", Inertia::equalised}},
+                   Need::optional,
+                   "real masses times mass_scaling, whose step follows; or for every particle the mass that a chosen "
+                   "step needs: fixed_step, or what inertia_measure makes of it");
     section.quantity("fixed_step", s.fixed_step, dim::time, Range::positive(), Need::optional,
                      "one step for the whole run instead of the rule");
     section.quantity("largest_step", s.largest_step, dim::time, Range::positive(), Need::optional,
-                     "the rule gives no longer step than this");
+                     "the rule gives no longer step than this; with inertia_measure 1/1000 of the process if absent");
+    section.quantity("smallest_step", s.smallest_step, dim::time, Range::positive(), Need::optional,
+                     "inertia_measure starts from this step and gives no shorter one; 1/200 of largest_step if absent");
+    section.quantity("inertia_measure", s.inertia_measure, dim::none, share, Need::optional,
+                     "with equalised inertia: the inertial number, strain rate x mean diameter x root of (density that "
+                     "moves / contact pressure), that the steps keep; the error of the density goes with its square");
     section.integer("limit_interval", s.limit_interval, 1, 1000000, Need::optional,
                     "steps between two evaluations of the limit");
     section.quantity("mass_scaling", s.mass_scaling, dim::none, Range::positive(), Need::optional,

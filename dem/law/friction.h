@@ -37,16 +37,28 @@ inline Vec3 coulomb(const FrictionModel& model, double coefficient, const Tangen
   return force;
 }
 
-/// Stiffness and damper of a contact as its particles' step limits have to count them: the larger of the normal ones
-/// and 3.5 times those of the sticking tangential spring, because a solid sphere answers it with 1/m + r^2/J = 3.5/m.
-inline Linearisation with_tangential_share(Linearisation l, const ContactModel& model, double reduced_mass) {
-  if (!model.friction) return l;
-  constexpr double rotation_factor = 3.5;
+/// What a solid sphere answers to a tangential force at its surface, 1/m + r^2/J, over its 1/m.
+inline constexpr double rotation_factor = 3.5;
+
+/// Stiffness and damper of the sticking tangential spring as its particles' step limits have to count them, 3.5 k_t and
+/// 3.5 c_t across the normal: with displacement x and turn y = r phi sqrt(J/(m r^2)), |P (x + sqrt(2.5) n x y)|^2 <=
+/// 3.5 (|P x|^2 + |P y|^2), P the projection on the contact plane.
+inline Linearisation tangential_share(const Linearisation& l, const ContactModel& model, double reduced_mass) {
+  Linearisation t;
+  if (!model.friction) return t;
   const double k = model.friction->tangential_stiffness_ratio * l.stiffness;
-  const double c = 2 * model.friction->tangential_damping_ratio * std::sqrt(reduced_mass * k);
-  l.stiffness = std::max(l.stiffness, rotation_factor * k);
-  l.damper = std::max(l.damper, rotation_factor * c);
-  return l;
+  t.stiffness = rotation_factor * k;
+  t.damper = rotation_factor * 2 * model.friction->tangential_damping_ratio * std::sqrt(reduced_mass * k);
+  return t;
+}
+
+/// The same share in StepStiffness, 3.5 (k_t + 2 c_t/dt) [N/m].
+inline double tangential_step_stiffness(const FrictionModel& model, double normal_stiffness, double reduced_mass,
+                                        double next_step) {
+  const double k = model.tangential_stiffness_ratio * normal_stiffness;
+  const double c =
+      model.tangential_damping_ratio > 0 ? 2 * model.tangential_damping_ratio * std::sqrt(reduced_mass * k) : 0.0;
+  return rotation_factor * (k + 2 * c / next_step);
 }
 
 }  // namespace densify::dem

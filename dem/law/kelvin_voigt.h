@@ -1,6 +1,7 @@
 #pragma once
 // The contact of loose particles: spring and damper in parallel, no tension in the spring (4.14-4.26).
 
+#include <algorithm>
 #include <limits>
 
 #include "dem/law/law.h"
@@ -23,6 +24,12 @@ struct KelvinVoigt {
   /// Force of an overlapping pair, in.overlap < 0 (4.14, 4.22).
   NormalForce update(const NormalInput& in) const {
     return {spring.force(in.overlap, in.elastic_radius) + damper(in) * in.rate, 0};
+  }
+
+  /// k + 2 c/dt of a step of length dt, at the overlap that the present rate leads to: see StepStiffness [N/m].
+  double step_stiffness(const NormalInput& in, double next_step) const {
+    const double k = spring.tangent(in.overlap + std::min(0.0, in.rate) * next_step, in.elastic_radius);
+    return damping_ratio == 0 ? k : k + 4 * damping_ratio * std::sqrt(in.reduced_mass * k) / next_step;
   }
 
   Linearisation linearise(const NormalInput& in) const {

@@ -77,6 +77,7 @@ struct SinteringContact {
   NormalForce update(const NormalInput& in, NeckHistory& h) const {
     if (h.phase == NeckPhase::loose) {
       if (!active) return loose.update(in);
+      if (!activation_step && in.step > 0) return born(in, h);
       begin(in, h);
       const double share = activity(h, in.time);
       const double f_sint = share > 0 ? share * sintering_force(h.radius, in.sintering_radius) : 0;
@@ -113,6 +114,29 @@ struct SinteringContact {
     // The damper sees the elastic part of the rate only: it stills vibration and adds no viscosity to the flow.
     if (settings.damping_ratio > 0 && in.step > 0) f += damper(in, k) * elastic_rate;
     return {f + f_sint, f_sint};
+  }
+
+  /// The constant stiffness that is as near to instability in a step of length dt as spring, damper and dashpot are:
+  /// (k + 2 c/dt)/(1 + (theta - 1/2) k dt/eta), 2 eta/dt without a spring; neck and spring are those that the present
+  /// rate leads to (see StepStiffness) [N/m].
+  double step_stiffness(const NormalInput& in, const NeckHistory& h, double next_step) const {
+    if (h.phase == NeckPhase::loose) return loose.step_stiffness(in, next_step);
+    const double approach = std::max(0.0, -in.rate) * next_step;
+    const double k = loose.spring.tangent(h.elastic - approach, in.elastic_radius);
+    const double whole = k + 2 * damper(in, k) / next_step;
+    // A neck that is about to reach equilibrium or that freezes stiffens within one step.
+    const bool soft =
+        h.phase == NeckPhase::sintering || h.phase == NeckPhase::activating || h.phase == NeckPhase::reactivating;
+    if (!soft) return whole;
+    NormalInput later = in;
+    later.overlap -= approach;
+    const double a = settings.neck == NeckGrowth::overlap
+                         ? std::max(neck_of_overlap(later), smallest_neck(in))
+                         : std::sqrt(h.radius * h.radius + 2 * in.sintering_radius * approach);
+    if (settings.model == SinteringModel::viscous) return std::max(whole, 2 * viscosity(a) / next_step);
+    if (a >= largest_neck(in) || settings.update == MaxwellUpdate::trapezoidal) return whole;
+    const double eta = series_viscosity(h.phase, a, activity(h, in.time));
+    return whole / (1 + 0.5 * k * next_step / eta);
   }
 
   Linearisation linearise(const NormalInput& in, const NeckHistory& h) const {
@@ -173,6 +197,15 @@ struct SinteringContact {
                           ? neck_of_overlap(in)
                           : std::sqrt(0.5 * in.sintering_radius * std::max(0.0, -in.overlap));  // (4.30)
     h.radius = std::clamp(a0, smallest_neck(in), largest_neck(in));
+  }
+
+  /// A contact that met within the step starts where the surfaces touched, with a small neck and no force, and lives
+  /// through the rest of the step: what it is at the end does not depend on where steps begin.
+  NormalForce born(const NormalInput& in, NeckHistory& h) const {
+    NormalInput rest = in;
+    if (in.rate < 0) rest.step = std::min(in.step, in.overlap / in.rate);
+    h = {smallest_neck(in), 0, in.time - rest.step, NeckPhase::sintering};
+    return update(rest, h);
   }
 
   /// a' = -r v / a (4.31) as a^2 - 2 r v dt (4.58), or the overlap's own neck; between a small neck and a_max.

@@ -108,17 +108,19 @@ dem::ContactModel model(double damping, double tangential_ratio, double tangenti
   return m;
 }
 
-// The particles' row sums (Gershgorin) bound the largest eigenvalue from above: the limit is never above the true one,
-// in crystals and in a shaken cluster of unequal spheres, with stiff and soft tangential springs.  It is not far below
-// either: the row sum forgets that the contacts of a particle point in different directions, which costs a factor of at
-// most sqrt(3) (2 in the simple cubic crystal of 3 cells, whose largest wave is not in the box).
+// The largest eigenvalues of the particles' matrix sums bound that of the whole from above: the limit is never above
+// the true one, in crystals and in a shaken cluster of unequal spheres, with stiff and soft tangential springs.  It is
+// not far below either.  With normal springs it is exact in a face-centred crystal (2/omega = 2 sqrt(m/(8 k)), A = 4 k
+// 1) and sqrt(3/4) of it in the simple cubic one of 3 cells, whose largest wave is not in the box; a sum of all k
+// without their directions would be sqrt(3) lower.  Sticking contacts resist in all directions.
 TEST(PackingStability, LimitOfSpringsIsNeverAboveTheTrueOne) {
   for (Body kind : {Body::simple_cubic, Body::body_centred, Body::face_centred, Body::cluster})
     for (double tangential : {0.0, 2.0 / 7, 1.0}) {
       const Simulation sim = make(kind, model(0, tangential, 0));
       const double ratio = sim.state().critical_step / undamped_limit(assemble(sim));
       EXPECT_LE(ratio, 1) << int(kind) << " k_t " << tangential;
-      EXPECT_GE(ratio, 0.49) << int(kind) << " k_t " << tangential;
+      EXPECT_GE(ratio, tangential == 0 ? 0.8 : 0.49) << int(kind) << " k_t " << tangential;
+      if (kind == Body::face_centred && tangential == 0) EXPECT_NEAR(ratio, 1, 2e-3);  // spacing 0.999 d
     }
 }
 
