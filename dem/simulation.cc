@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/check.h"
 #include "dem/integrate/leapfrog.h"
@@ -71,6 +72,12 @@ bool activation_has_begun(const PairTable& table) {
     for (std::uint8_t b = a; b < table.materials(); ++b)
       if (table.row(a, b).activation_step) return true;
   return false;
+}
+
+std::string short_text(double value) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.4g", value);
+  return buffer;
 }
 
 double sphere_volume(double r) {
@@ -235,18 +242,10 @@ void Simulation::rebuild_lists() {
   prune_near(0);
 }
 
-void Simulation::require_finite_positions() const {
-  for (std::size_t p = 0; p < state_.particles.size(); ++p)
-    if (!state_.particles.body[p].position.allFinite())
-      throw RunError("the position of particle " + std::to_string(state_.particles.id[p]) +
-                     " is no longer finite at process time " + std::to_string(state_.time) +
-                     " s; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
-}
-
 void Simulation::keep_list_fresh() {
   const int threads = setup_.integration.threads;
   const double travel = pass_.near().travel(state_.particles, state_.cell, state_.expansion, threads);
-  if (std::isnan(travel)) require_finite_positions();
+  if (std::isnan(travel)) require_finite(state_);
   const bool first_necks =
       setup_.contact.sintering && state_.contacts.neck.empty() && state_.contacts.size() > 0 && table_.any_active();
   bool rebuilding = first_necks || state_.walls.age(state_.contacts.skin) >= 1;
@@ -254,7 +253,7 @@ void Simulation::keep_list_fresh() {
   // The list is rebuilt exactly when its own age says so, whatever was pruned since; travel only spares looking.
   if (!rebuilding && (prune || travel >= list_slack_)) {
     const double age = list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, threads);
-    if (std::isnan(age)) require_finite_positions();
+    if (std::isnan(age)) require_finite(state_);
     rebuilding = age >= 1;
     if (!rebuilding && prune) prune_near(age);
   }
@@ -287,6 +286,13 @@ void Simulation::compute_forces(Recording* record) {
       state_.particles.force[p] += real_mass(p) * setup_.integration.gravity;
 }
 
+GuardView Simulation::guard_view() {
+  double growth = 0;
+  if (state_.last_step > 0)
+    for (double e : expansion_step_) growth = std::max(growth, std::abs(e) / state_.last_step);
+  return {setup_, state_, table_, pass_.near(), pressure(), growth};
+}
+
 StepLimit Simulation::step_limit() {
   const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
   return critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact, state_.walls, punch,
@@ -295,11 +301,17 @@ StepLimit Simulation::step_limit() {
 
 void Simulation::require_stable_step() {
   const double fixed = setup_.integration.fixed_step;
-  if (std::isnan(fixed) || equalised()) return;
+  if (equalised()) return;
   const StepLimit limit = step_limit();
+  constexpr double most_steps = 1e14;  // years, even of two spheres at a tenth of a microsecond a step
+  const double step = std::isnan(fixed) ? setup_.integration.step_safety * limit.critical : fixed;
+  if (!((setup_.schedule.end() - state_.time) / step < most_steps))
+    throw InputError("integration.mass_scaling: the process of " + short_text(setup_.schedule.end()) +
+                     " s would take more than 1e14 steps of " + short_text(step) +
+                     " s; use a larger mass_scaling, or a shorter process");
   if (fixed > limit.critical)
-    throw InputError("integration.fixed_step: " + std::to_string(fixed) + " s is above the stability limit of " +
-                     std::to_string(limit.critical) + " s (particle " +
+    throw InputError("integration.fixed_step: " + short_text(fixed) + " s is above the stability limit of " +
+                     short_text(limit.critical) + " s (particle " +
                      std::to_string(state_.particles.id[limit.particle]) +
                      "); use a smaller one, a larger mass_scaling, or leave it out");
 }
@@ -309,10 +321,18 @@ double Simulation::choose_step() {
   // The viscosity of a young neck grows as a^4, by orders of magnitude in a few steps: its limit m/eta follows at once.
   const bool dashpots = setup_.contact.sintering && setup_.contact.sintering->model == SinteringModel::viscous &&
                         !state_.contacts.neck.empty() && std::isnan(settings.fixed_step);
-  const std::uint64_t interval = dashpots ? 1 : std::uint64_t(settings.limit_interval);
+  // A punch that strikes presses Hertz springs by a tenth of a radius within an interval, and stiffens them as much.
+  const double mean_radius = state_.contacts.skin / settings.skin;
+  constexpr double striking = 3e-3;  // of the mean radius in a step
+  const bool strikes = std::abs(state_.punch.velocity) * state_.last_step > striking * mean_radius;
+  const std::uint64_t interval = dashpots || strikes ? 1 : std::uint64_t(settings.limit_interval);
   if (state_.steps % interval == 0 || state_.stable_step == 0) {
     const StepLimit limit = step_limit();
     state_.critical_step = limit.critical;
+    if (settings.fixed_step > limit.critical && settings.guards.guarding == Guarding::on)
+      throw RunError("integration.fixed_step of " + short_text(settings.fixed_step) +
+                     " s has come above the stability limit of " + short_text(limit.critical) + " s (particle " +
+                     std::to_string(state_.particles.id[limit.particle]) + "); use a smaller one, or leave it out");
     state_.stable_step = settings.step_safety * limit.critical;
     if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
     if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
@@ -378,6 +398,7 @@ void Simulation::evaluate(Recording* record) {
   refresh();
   if (equalised()) plan_equalised_step();
   compute_forces(record);
+  guards_.look(guard_view());
   evaluated_ = true;
 }
 
@@ -386,6 +407,11 @@ void Simulation::move() {
   evaluated_ = refreshed_ = false;
   const double step = equalised() ? stiffness_.next_step : choose_step();
   if (equalised()) equalise_inertia();
+  if (!(state_.time + step > state_.time))
+    throw RunError("the step of " + short_text(step) + " s no longer moves the process time of " +
+                   short_text(state_.time) +
+                   " s on; the contacts have become too stiff or the masses too small, try "
+                   "a larger mass_scaling");
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   if (state_.punch.mass > 0) {
     const double before = state_.punch.velocity;
@@ -419,6 +445,7 @@ bool Simulation::all_at_equilibrium() const {
 
 void Simulation::restore(State state) {
   evaluated_ = refreshed_ = false;
+  guards_.forget();
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
   table_unsettled_ = true;
