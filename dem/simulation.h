@@ -8,6 +8,7 @@
 #include "dem/boundary/punch.h"
 #include "dem/integrate/guards.h"
 #include "dem/integrate/inertia.h"
+#include "dem/integrate/inertia_free.h"
 #include "dem/integrate/step_control.h"
 #include "dem/integrate/time_step.h"
 
@@ -33,6 +34,8 @@ struct Load {
 };
 
 struct IntegrationSettings {
+  IntegrationMethod method = IntegrationMethod::leapfrog;
+  InertiaFreeSettings inertia_free;
   StepRule rule = StepRule::particle_sum;
   double step_safety = 0.8;
   Inertia inertia = Inertia::uniform;
@@ -77,6 +80,7 @@ struct State {
   double stable_step = 0;         ///< safety x critical of the last evaluation [s]
   double critical_step = 0;       ///< [s]
   std::uint64_t steps = 0;
+  bool inertia_free = false;         ///< moves without inertia by now, masses are real
   std::vector<double> active_since;  ///< of each pair of materials [s]
   ControlState control;              ///< equalised inertia only
 };
@@ -116,7 +120,7 @@ class Simulation {
   /// computer will do.
   void require_stable_step();
 
-  bool equalised() const { return setup_.integration.inertia == Inertia::equalised; }
+  bool equalised() const { return setup_.integration.inertia == Inertia::equalised && !state_.inertia_free; }
   bool finished() const { return state_.time >= setup_.schedule.end(); }
   /// True when every neck of a packing that has necks is at equilibrium.
   bool all_at_equilibrium() const;
@@ -145,7 +149,8 @@ class Simulation {
   std::optional<std::size_t> wall(std::string_view name) const;
   /// Present area under the punch, the hot one in an expanding die; 0 without lateral walls [m^2].
   double punch_area() const;
-  std::size_t bytes() const;         ///< memory of state and scratch
+  std::size_t bytes() const;  ///< memory of state and scratch
+  const InertiaFreeCount& inertia_free_count() const { return inertia_free_.count(); }
   std::size_t contacts_now() const;  ///< touching or necked pairs
 
  private:
@@ -156,6 +161,9 @@ class Simulation {
   void plan_equalised_step();
   void equalise_inertia();
   Column column() const;
+  bool moves_without_inertia() const;
+  void drop_inertia();
+  double leapfrog_step();
   void rebuild_lists();
   void prune_near(double list_age);
   GuardView guard_view();
@@ -163,6 +171,7 @@ class Simulation {
   Setup setup_;
   PairTable table_;
   ForcePass pass_;
+  InertiaFree inertia_free_;
   State state_;
   Guards guards_;
   bool refreshed_ = false;       // between refresh() and move()

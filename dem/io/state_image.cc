@@ -233,6 +233,7 @@ void write_state(Hdf5Writer& file, const State& state) {
   file.list("/state/strain_rate", flat(state.control.strain_rate), "1/s");
   file.list<double>("/state/inertial_number", {state.control.inertial_number}, "1");
   file.attribute("/state", "steps", state.steps);
+  file.attribute("/state", "inertia_free", std::uint64_t(state.inertia_free));
 }
 
 State read_state(const Hdf5Reader& file, const Simulation& simulation) {
@@ -271,6 +272,7 @@ State read_state(const Hdf5Reader& file, const Simulation& simulation) {
   s.control.strain_rate = read_matrix(file, "/state/strain_rate");
   s.control.inertial_number = read_list<double>(file, "/state/inertial_number", 1)[0];
   s.steps = file.attribute<std::uint64_t>("/state", "steps");
+  s.inertia_free = file.attribute<std::uint64_t>("/state", "inertia_free") != 0;
   require(std::isfinite(s.time) && std::isfinite(s.temperature), "/state/clock");
   return s;
 }
