@@ -123,7 +123,7 @@ void print_trade(const Ladder& ladder, const std::vector<TradeRow>& rows, const 
 /// trade.png and trade.svg beside trade.csv, by the shipped script.
 void plot(const fs::path& folder) {
   const std::string script = data_path("tools/plot_trade.py").string();
-  const std::string files = "'" + (folder / "trade.csv").string() + "' -o '" + (folder / "trade").string() + "'";
+  const std::string files = fmt::format("'{}' -o '{}'", (folder / "trade.csv").string(), (folder / "trade").string());
   bool drawn = false;
   for (const char* python : {"python3", "/usr/bin/python3"})  // the second is the one that Debian's packages serve
     drawn = drawn || std::system(fmt::format("{} '{}' {} 2>/dev/null", python, script, files).c_str()) == 0;
