@@ -204,6 +204,8 @@ void Simulation::set_environment() {
     }
     if (state_.punch.mass > 0) state_.punch.area = punch_area();
   }
+  for (const double growth : expansion_step_)
+    may_have_travelled_ += 1.1 * std::abs(growth) * 2 * state_.contacts.largest_radius;
   state_.temperature = t;
 }
 
@@ -232,11 +234,13 @@ void Simulation::require_finite_positions() const {
 
 void Simulation::keep_list_fresh() {
   const int threads = setup_.integration.threads;
-  const double travel = pass_.near().travel(state_.particles, state_.cell, state_.expansion, threads);
-  if (std::isnan(travel)) require_finite_positions();
   const bool first_necks =
       setup_.contact.sintering && state_.contacts.neck.empty() && state_.contacts.size() > 0 && table_.any_active();
   bool rebuilding = first_necks || state_.walls.age(state_.contacts.skin) >= 1;
+  if (!rebuilding && may_have_travelled_ < std::min(list_slack_, pass_.near().skin())) return;
+  const double travel = pass_.near().travel(state_.particles, state_.cell, state_.expansion, threads);
+  if (std::isnan(travel)) require_finite_positions();
+  may_have_travelled_ = travel;
   const bool prune = travel >= pass_.near().skin();
   // The list is rebuilt exactly when its own age says so, whatever was pruned since; travel only spares looking.
   if (!rebuilding && (prune || travel >= list_slack_)) {
@@ -253,6 +257,7 @@ void Simulation::prune_near(double list_age) {
   pass_.near_changed(state_.contacts, state_.particles.size());
   constexpr double rounding = 1e-9;  // of the sum of two distances
   list_slack_ = (1 - list_age - rounding) * state_.contacts.skin;
+  may_have_travelled_ = 0;
 }
 
 void Simulation::compute_forces(Recording* record) {
@@ -327,7 +332,12 @@ void Simulation::move() {
     state_.punch.kick(state_.walls.normal_force()[*punch_wall_], pressure(), kick_step);
     state_.walls.wall[*punch_wall_].velocity = Vec3(0, 0, state_.punch.velocity);
   }
-  leapfrog(state_.particles, state_.cell, {kick_step, step}, setup_.integration.drag, setup_.integration.threads);
+  const double fastest =
+      leapfrog(state_.particles, state_.cell, {kick_step, step}, setup_.integration.drag, setup_.integration.threads);
+  const double flow = state_.cell.periodic ? state_.cell.velocity_gradient.norm() : 0.0;
+  const double reach = 2 * state_.contacts.largest_radius + state_.contacts.skin;
+  const double above = flow > 0 ? 1.5 : 1 + 1e-9;  // strains between two prunings multiply
+  may_have_travelled_ += above * step * (2 * fastest + flow * reach);
   for (auto& w : state_.walls.wall) {
     w.point += step * w.velocity;
     w.radius += step * w.radius_rate;
@@ -357,6 +367,7 @@ void Simulation::restore(State state) {
   const double since_time = state_.time - state_.last_step;
   if (!std::isnan(state_.temperature)) table_.update(state_.temperature, since_time);
   pass_.list_changed(state_.contacts, state_.particles.size());
+  may_have_travelled_ = std::numeric_limits<double>::infinity();
 }
 
 std::size_t Simulation::contacts_now() const {

@@ -141,6 +141,8 @@ class Simulation {
   bool evaluated_ = false;       // between evaluate() and move()
   bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
   double list_slack_ = 0;        // what may be travelled since the last pruning before the list can be too old [m]
+  // What surfaces may have approached since the last pruning, from above: no look at all particles before it matters.
+  double may_have_travelled_ = std::numeric_limits<double>::infinity();  // [m]
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
 };

@@ -14,14 +14,15 @@ struct KelvinVoigt {
   double damping_ratio;  ///< xi, of the critical damping (4.24, 4.25) of the tangent stiffness
 
   /// Damper c = 2 xi sqrt(m k) with the reduced mass and the tangent stiffness (4.24, 4.25) [N s/m].
-  double damper(const NormalInput& in) const {
-    return damping_ratio == 0
-               ? 0.0
-               : 2 * damping_ratio * std::sqrt(in.reduced_mass * spring.tangent(in.overlap, in.elastic_radius));
+  template <class T>
+  T damper(const NormalInputOf<T>& in) const {
+    if (damping_ratio == 0) return 0.0;
+    return 2 * damping_ratio * root(in.reduced_mass * spring.tangent(in.overlap, in.elastic_radius));
   }
 
   /// Force of an overlapping pair, in.overlap < 0 (4.14, 4.22).
-  NormalForce update(const NormalInput& in) const {
+  template <class T>
+  NormalForceOf<T> update(const NormalInputOf<T>& in) const {
     return {spring.force(in.overlap, in.elastic_radius) + damper(in) * in.rate, 0};
   }
 
