@@ -101,7 +101,7 @@ struct Row {
   }
   /// x y z and 0.
   static Row load3(const double* p) {
-    return {Vector(_mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p)), _mm_load_sd(p + 2), 1))};
+    return {Vector(_mm256_maskload_pd(p, _mm256_setr_epi64x(-1, -1, -1, 0)))};
   }
   void store(double* p) const { std::memcpy(p, this, sizeof *this); }
   void store3(double* p) const {
