@@ -12,8 +12,8 @@ struct BenchOptions {
   std::vector<std::string> cases;     ///< A, B, S; none given: A and B
   int threads = 1;
   std::uint64_t steps = 0;  ///< steps of one repeat; 0: as many as take about half a second
-  bool features = false;  ///< bench_features instead
-  bool scaling = false;   ///< bench_scaling instead
+  bool features = false;    ///< bench_features instead
+  bool scaling = false;     ///< bench_scaling instead
   bool json = false;        ///< one JSON object (an array of them for several jobs) instead of a table
 };
 

@@ -49,14 +49,16 @@ int bench_features() {
 #ifdef DENSIFY_CHECKS
   fmt::print("The contracts between functions are checked in this build.\n");
 #else
-  fmt::print("The contracts between functions are not checked in this build; DENSIFY_PRESET=audit is the same with them.\n");
+  fmt::print(
+      "The contracts between functions are not checked in this build; DENSIFY_PRESET=audit is the same with them.\n");
 #endif
   return 0;
 }
 
 int bench_scaling(int threads) {
   const Size sizes[] = {{"m2k", {1, 1, 1}}, {"m20k", {1, 1, 1}}, {"m20k", {5, 2, 1}}, {"m20k", {5, 5, 2}}};
-  fmt::print("{:>9} {:>16} {:>10} {:>12} {:>16}\n", "particles", "ns/part-step", "ratio", "bytes/part", "peak bytes/part");
+  fmt::print("{:>9} {:>16} {:>10} {:>12} {:>16}\n", "particles", "ns/part-step", "ratio", "bytes/part",
+             "peak bytes/part");
   double first = 0;
   for (const auto& size : sizes) {
     BenchJob job;

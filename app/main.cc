@@ -7,6 +7,8 @@
 #include "app/bench.h"
 #include "app/check.h"
 #include "app/run.h"
+#include "app/trade.h"
+#include "app/trade_ladder.h"
 #include "base/check.h"
 #include "base/nearest.h"
 #include "base/version.h"
@@ -59,6 +61,22 @@ int run_main(int argc, char** argv) {
   bench_command->add_flag("--scaling", bench.scaling, "Case A on 2e3 to 1e6 particles");
   bench_command->add_flag("--json", bench.json, "JSON instead of a table");
 
+  densify::app::TradeCommand trade;
+  CLI::App* trade_command = app.add_subcommand(
+      "trade", "Measure what each setting of a scene costs and how far it is from the converged one");
+  trade_command->add_option("SCENE", trade.scene, "A scene file, or a folder that holds scene.toml")->required();
+  trade_command->add_option("--out", trade.folder, "Folder of runs, table and plot")->required();
+  trade_command->add_option("--ladder", trade.ladder, "A file of settings to compare; without it the built-in ladder");
+  trade_command->add_option("--set", trade.overrides, "path.to.key=value of all rungs, again for each")->take_all();
+  trade_command->add_option("--realisations", trade.realisations, "Of every rung; without it as the ladder says")
+      ->check(CLI::Range(2, 100000));
+  trade_command->add_option("--threads", trade.threads, "Runs at a time, one thread each; without it one a core")
+      ->check(CLI::Range(1, 1024));
+  trade_command->add_flag("--resume", trade.resume, "Keep the finished runs in the folder and make the others");
+  trade_command->add_flag("--quiet", trade.quiet, "No progress, no tables");
+
+  CLI::App* ladder_command =
+      app.add_subcommand("help-ladder", "Every key of a ladder with unit, range, default and meaning");
   CLI::App* scene_command =
       app.add_subcommand("help-scene", "Every key of a scene with unit, range, default and meaning");
   CLI::App* help_command = app.add_subcommand("help", "This text");
@@ -78,6 +96,8 @@ int run_main(int argc, char** argv) {
   if (run_command->parsed()) return densify::app::run_command(run);
   if (check_command->parsed()) return densify::app::check_command(check);
   if (bench_command->parsed()) return densify::app::bench_command(bench);
+  if (trade_command->parsed()) return densify::app::trade_command(trade);
+  if (ladder_command->parsed()) std::fputs(densify::app::ladder_help().c_str(), stdout);
   if (scene_command->parsed()) std::fputs(densify::dem::scene_help().c_str(), stdout);
   if (help_command->parsed()) std::fputs(app.help().c_str(), stdout);
   return 0;

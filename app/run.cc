@@ -1,91 +1,20 @@
 #include "app/run.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <thread>
 
+#include "app/progress_line.h"
 #include "base/version.h"
 #include "dem/ensemble.h"
-#include "dem/run.h"
 
 namespace densify::app {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-std::atomic<bool> stop_requested{false};
-
-extern "C" void request_stop(int) {
-  stop_requested = true;
-}
-
-std::string duration(double seconds) {
-  if (!(seconds >= 0)) return "-";
-  if (seconds < 100) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 6000) return fmt::format("{:.0f} min {:.0f} s", std::floor(seconds / 60), std::fmod(seconds, 60.0));
-  return fmt::format("{:.1f} h", seconds / 3600);
-}
-
-/// A line that rewrites itself on a terminal; elsewhere one line at every tenth of the way.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO)) {}
-
-  void show(const dem::Progress& p) {
-    if (quiet_) return;
-    const bool packing = p.stage == "packing";
-    if (!terminal_) {
-      const int tenth = int(10 * p.share) + (packing ? 0 : 100);
-      if (tenth == last_tenth_) return;
-      last_tenth_ = tenth;
-    }
-    std::string line = packing
-                           ? fmt::format("packing {:3.0f} %  left {}", 100 * p.share, duration(p.seconds_left))
-                           : fmt::format(
-                                 "{:3.0f} %  {:<16.16s} t {:>8.4g} s  T {:6.1f} K  p {:6.2f} MPa  density {}  {:>9.3g} "
-                                 "steps/s  left {}",
-                                 100 * p.share, p.stage, p.time, p.temperature, p.pressure * 1e-6,
-                                 std::isfinite(p.relative_density) ? fmt::format("{:.4f}", p.relative_density) : "-",
-                                 p.steps_per_second, duration(p.seconds_left));
-    if (terminal_) {
-      fmt::print(stderr, "\r{:<118s}", line);
-      std::fflush(stderr);
-      open_ = true;
-    } else {
-      fmt::print(stderr, "{}\n", line);
-    }
-  }
-  void show(const dem::EnsembleProgress& p) {
-    if (quiet_) return;
-    const int tenth = int(10 * p.share);
-    if (!terminal_ && tenth == last_tenth_) return;
-    last_tenth_ = tenth;
-    const std::string line = fmt::format("{:3.0f} %  realisations: {} of {} done, {} running  left {}", 100 * p.share,
-                                         p.done, p.all, p.running, duration(p.seconds_left));
-    fmt::print(stderr, fmt::runtime(terminal_ ? "\r{:<118s}" : "{}\n"), line);
-    std::fflush(stderr);
-    open_ = terminal_;
-  }
-  void say(const std::string& line) {
-    if (quiet_) return;
-    end();
-    fmt::print(stderr, "{}\n", line);
-  }
-  void end() {
-    if (open_) fmt::print(stderr, "\n");
-    open_ = false;
-  }
-
- private:
-  bool quiet_, terminal_, open_ = false;
-  int last_tenth_ = -1;
-};
 
 void print_summary(const dem::RunSummary& s, const fs::path& folder) {
   const dem::Measures& m = s.last;
@@ -145,8 +74,10 @@ int run_realisations(const dem::Scene& scene, const RunCommand& command, const f
   options.mode = command.resume ? dem::Continue::resume : dem::Continue::fresh;
   options.threads = command.threads > 0 ? command.threads : int(std::max(1u, std::thread::hardware_concurrency()));
   options.version = std::string(version());
-  options.progress = [&](const dem::EnsembleProgress& p) { line.show(p); };
-  options.stop = &stop_requested;
+  options.progress = [&](const dem::EnsembleProgress& p) {
+    line.show_count("realisations", p.done, p.all, p.share, p.seconds_left);
+  };
+  options.stop = &catch_signals();
   try {
     const dem::EnsembleSummary summary = dem::run_ensemble(scene, options);
     line.end();
@@ -176,9 +107,6 @@ int run_command(const RunCommand& command) {
     folder = fs::path("results") / name;
   }
 
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is to be a failed write, as a full disk is
   if (scene.realisations > 1) return run_realisations(scene, command, folder);
   ProgressLine line(command.quiet);
   dem::RunOptions options;
@@ -188,7 +116,7 @@ int run_command(const RunCommand& command) {
   options.version = std::string(version());
   options.progress = [&](const dem::Progress& p) { line.show(p); };
   options.say = [&](const std::string& text) { line.say(text); };
-  options.stop = &stop_requested;
+  options.stop = &catch_signals();
   try {
     const dem::RunSummary summary = dem::run(scene, options);
     line.end();

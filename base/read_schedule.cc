@@ -43,7 +43,9 @@ double duration_of(const Section& section, const StageKeys& keys, double start, 
   }
   const std::string stage = "stage \"" + keys.name + "\"";
   if (given != "duration" && given != "end" && given != "rate") {
-    section.fail("", stage + " needs exactly one of duration, end and rate, found " + (given.empty() ? "none" : given));
+    const std::string problem = stage + " needs exactly one of duration, end and rate, found ";
+    if (given.empty()) section.fail_missing({"duration", "end", "rate"}, problem + "none");
+    section.fail("", problem + given);
   }
   if (given == "end" && keys.end <= start) {
     section.fail("end", stage + " goes back in time (it starts at " + format_quantity(start, dim::time) +

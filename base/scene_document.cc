@@ -55,6 +55,10 @@ std::string SceneDocument::effective_text() const {
   return render_effective(state_->record);
 }
 
+std::vector<std::string> SceneDocument::declared_keys() const {
+  return densify::declared_keys(state_->record);
+}
+
 void SceneDocument::reject_unknown() const {
   reject_unknown_keys(*state_);
 }

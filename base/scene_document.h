@@ -38,6 +38,9 @@ class SceneDocument {
   /// After the visit: TOML with every value in use in SI units; read again it gives the same values bit for bit.
   std::string effective_text() const;
 
+  /// After the visit: the names of all declared keys, wherever they stand; for MissingKey::misspelling.
+  std::vector<std::string> declared_keys() const;
+
   /// After the visit: throws InputError for a key nobody declared, with the nearest declared one.
   void reject_unknown() const;
 

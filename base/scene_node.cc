@@ -145,7 +145,8 @@ void apply_override(SceneNode& root, std::string_view assignment) {
   const auto split = split_path(assignment);
   if (!split) throw InputError(origin + ": not understood; write --set path.to.key=value");
   const std::vector<std::string>& keys = split->first;
-  SceneNode* node = &root;
+  const std::string value(assignment.substr(split->second + 1));
+  SceneNode *node = &root, *parent = nullptr;
   std::string path;
   for (const std::string& key : keys) {
     SceneNode* next = nullptr;
@@ -154,6 +155,7 @@ void apply_override(SceneNode& root, std::string_view assignment) {
       path.append(".").append(key);
     } else if (node->kind == SceneNode::Kind::table) {
       next = node->find(key);
+      if (!next && value.empty()) return;
       if (!next) {
         node->names.push_back(key);
         next = &node->items.emplace_back();
@@ -163,9 +165,16 @@ void apply_override(SceneNode& root, std::string_view assignment) {
     } else {
       throw InputError(origin + ": " + path + " is " + std::string(kind_name(node->kind)) + ", not a table");
     }
+    parent = node;
     node = next;
   }
-  *node = parse_value(std::string(assignment.substr(split->second + 1)));
+  if (value.empty() && parent->kind == SceneNode::Kind::table) {
+    const auto index = node - parent->items.data();
+    parent->names.erase(parent->names.begin() + index);
+    parent->items.erase(parent->items.begin() + index);
+    return;
+  }
+  *node = parse_value(value);
   set_origin(*node, origin);
 }
 

@@ -9,6 +9,22 @@
 
 namespace densify {
 
+MissingKey::MissingKey(const std::string& message, std::vector<std::string> wanted, const SceneNode& table)
+    : InputError(message), wanted_(std::move(wanted)) {
+  for (std::size_t i = 0; i < table.names.size(); ++i) given_.emplace_back(table.names[i], table.items[i].line);
+}
+
+std::string MissingKey::misspelling(const std::vector<std::string>& known) const {
+  for (const auto& [name, line] : given_) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string advice = did_you_mean(name, wanted_);
+    if (advice.empty()) continue;
+    const std::string place = line > 0 ? " in line " + std::to_string(line) : "";
+    return "; " + toml_text(name) + place + " is no key: " + advice.substr(2);
+  }
+  return "";
+}
+
 void Section::quantity(std::string_view key, double& value, Dimension dimension, const Range& range, Need need,
                        std::string_view meaning) {
   const std::string current = std::isnan(value) ? "" : format_quantity(value, dimension);
@@ -94,6 +110,10 @@ void Section::fail(std::string_view key, std::string_view message) const {
   throw InputError(where(key).append(": ").append(message));
 }
 
+void Section::fail_missing(std::initializer_list<std::string_view> keys, std::string_view message) const {
+  throw MissingKey(where("").append(": ").append(message), {keys.begin(), keys.end()}, *record_->table);
+}
+
 void Section::fail_at(const SceneNode& node, std::string_view key, std::string_view message) const {
   throw InputError(place_of(*state_, node, join_path(record_->path, key)).append(": ").append(message));
 }
@@ -138,7 +158,7 @@ const SceneNode* Section::present(std::string_view key, Need need, std::string_v
   std::string message = "missing, and required (";
   message.append(meaning).append(")");
   if (!example.empty()) message.append("; write ").append(join_path("", key)).append(" = ").append(example);
-  fail(key, message);
+  throw MissingKey(where(key).append(": ").append(message), {std::string(key)}, *record_->table);
 }
 
 double Section::read_quantity(std::string_view key, const SceneNode& node, Dimension dimension,

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/check.h"
 #include "base/dimension.h"
 #include "base/piecewise_linear.h"
 #include "base/range.h"
@@ -25,6 +26,21 @@ namespace densify {
 /// What an absent key means.  `defaulted` is for sections: visited as if it stood there empty, so that its defaults
 /// reach the effective input; for every other key it is `optional`.
 enum class Need { optional, required, defaulted };
+
+/// A table lacks a key that it needs.  What stands there instead may be its misspelling.
+class MissingKey : public InputError {
+ public:
+  /// `wanted`: keys of which one would do.
+  MissingKey(const std::string& message, std::vector<std::string> wanted, const SceneNode& table);
+
+  /// "; \"coeficient\" in line 21 is no key: did you mean \"coefficient\"?" for the key of the table that is nearest
+  /// to a wanted one and not among the known ones; nothing when none is near.
+  std::string misspelling(const std::vector<std::string>& known) const;
+
+ private:
+  std::vector<std::string> wanted_;
+  std::vector<std::pair<std::string, int>> given_;  // keys of the table with their lines
+};
 
 /// A handle on one table, valid as long as its SceneDocument.  Every reader keeps the value it is given when the key is
 /// absent and optional (NaN, an empty text or list: not set), and throws InputError "file:line: path.to.key: problem"
@@ -93,6 +109,9 @@ class Section {
 
   /// Throws InputError "file:line: path.to.key: message"; an empty key stands for the table itself.
   [[noreturn]] void fail(std::string_view key, std::string_view message) const;
+
+  /// Throws MissingKey "file:line: path: message" at the table, which lacks one of `keys`.
+  [[noreturn]] void fail_missing(std::initializer_list<std::string_view> keys, std::string_view message) const;
 
   /// "file:line: path.to.key", or "--set path.to.key=value" for an override; the line of the table for an absent key.
   std::string where(std::string_view key) const;

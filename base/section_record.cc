@@ -95,6 +95,18 @@ std::string render_effective(const SectionRecord& root) {
   return out;
 }
 
+std::vector<std::string> declared_keys(const SectionRecord& root) {
+  std::vector<std::string> keys;
+  for (const auto& entry : root.entries) {
+    keys.push_back(entry->key);
+    for (const auto& child : entry->children) {
+      const std::vector<std::string> below = declared_keys(*child);
+      keys.insert(keys.end(), below.begin(), below.end());
+    }
+  }
+  return keys;
+}
+
 void reject_unknown_keys(const SceneState& state) {
   Unknown unknown;
   find_unknown(state.record, unknown);

@@ -54,6 +54,9 @@ std::string render_help(const SectionRecord& root);
 /// All values in use as TOML, in the order of declaration.
 std::string render_effective(const SectionRecord& root);
 
+/// The names of all declared keys, wherever they stand.
+std::vector<std::string> declared_keys(const SectionRecord& root);
+
 /// Throws InputError for the first key of a visited table that nobody declared.
 void reject_unknown_keys(const SceneState& state);
 

@@ -21,6 +21,7 @@ set(data_root ${PROJECT_BINARY_DIR}/share/densify)
 file(MAKE_DIRECTORY ${data_root})
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/dem/material/library ${data_root}/materials SYMBOLIC)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/examples/benchmark ${data_root}/benchmark SYMBOLIC)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/examples/tools ${data_root}/tools SYMBOLIC)
 
 set(header ${PROJECT_BINARY_DIR}/generated/base/build_info.h)
 add_custom_target(densify_build_info

@@ -12,6 +12,7 @@
 
 #include "base/check.h"
 #include "dem/io/atomic_file.h"
+#include "dem/io/result_folder.h"
 
 namespace densify::dem {
 
@@ -164,21 +165,6 @@ std::vector<RunSummary> Ensemble::run_all(const fs::path& packing) {
   return std::move(summary_);
 }
 
-/// Makes the folder ready; true when it was not there before.
-bool open_ensemble_folder(const fs::path& folder, Continue mode) {
-  const bool begun = fs::exists(realisation_folder(folder, 0)) || fs::exists(folder / "packing.h5");
-  if (mode == Continue::resume) {
-    if (begun) return false;
-    throw InputError("--resume: " + folder.string() +
-                     " holds no realisations, so there is nothing to resume; start the run without --resume");
-  }
-  if (begun)
-    throw InputError("--out " + folder.string() +
-                     ": the folder holds other results; nothing was changed.  Choose another folder, or continue that "
-                     "run with --resume");
-  return open_result_folder(folder, mode);
-}
-
 /// The specimen that all perturbations start from, packed once; nothing for an ensemble of packings.
 fs::path shared_packing(const Scene& scene, const EnsembleOptions& options) {
   if (scene.perturbation.size == 0 || !scene.powder) return {};
@@ -229,14 +215,13 @@ fs::path realisation_folder(const fs::path& ensemble, int k) {
 
 EnsembleSummary run_ensemble(const Scene& scene, const EnsembleOptions& options) {
   const auto start = Clock::now();
-  const bool made = open_ensemble_folder(options.folder, options.mode);
+  ResultFolder folder(options.folder, options.mode, {realisation_folder("", 0).string(), "packing.h5"});
   EnsembleSummary summary;
   try {
     const fs::path packing = shared_packing(scene, options);
     summary.realisation = Ensemble(scene, options).run_all(packing);
   } catch (...) {
-    std::error_code in_use;  // leaves no empty folder behind; one with files stays
-    if (made) fs::remove(options.folder, in_use);
+    folder.abandon();  // leaves no empty folder behind; one with files stays
     throw;
   }
   std::vector<History> histories;

@@ -55,6 +55,7 @@ std::vector<HistoryColumn> history_columns(const Setup& setup) {
                        {"punch_pressure_mean_Pa", "Pa"},
                        {"bottom_pressure_Pa", "Pa"},
                        {"lateral_pressure_Pa", "Pa"}});
+  if (setup.integration.inertia == Inertia::equalised) c.push_back({"inertial_number", "1"});
   c.insert(c.end(), {{"unbalanced_force_ratio", "1"},
                      {"kinetic_over_elastic_energy", "1"},
                      {"damping_force_share", "1"},
@@ -90,6 +91,7 @@ std::vector<double> history_row(const Simulation& sim, const Measures& m, Histor
     const double mean = memory.punch_time > 0 ? memory.punch_impulse / memory.punch_time / area : m.punch_pressure;
     row.insert(row.end(), {m.punch_pressure, mean, m.bottom_pressure, m.lateral_pressure});
   }
+  if (setup.integration.inertia == Inertia::equalised) row.push_back(s.control.inertial_number);
   row.insert(row.end(), {m.unbalanced_force_ratio, m.elastic_energy > 0 ? m.kinetic_energy / m.elastic_energy : unset,
                          m.damping_share, m.largest_overlap, s.last_step, double(s.steps)});
   memory.density = m.relative_density;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/check.h"
 #include "dem/integrate/leapfrog.h"
@@ -84,11 +85,28 @@ bool activation_has_begun(const PairTable& table) {
   return false;
 }
 
+std::string short_text(double value) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.4g", value);
+  return buffer;
+}
+
 double sphere_volume(double r) {
   return 4.0 / 3 * M_PI * r * r * r;
 }
 
 }  // namespace
+
+StepControl step_control(const IntegrationSettings& settings, const Schedule& schedule) {
+  constexpr double share_of_process = 1e-3, span = 200, share_of_peak = 0.01;
+  StepControl c;
+  c.measure = settings.inertia_measure;
+  c.largest_step = std::isnan(settings.largest_step) ? share_of_process * schedule.end() : settings.largest_step;
+  c.smallest_step = std::isnan(settings.smallest_step) ? c.largest_step / span : settings.smallest_step;
+  for (const Stage& stage : schedule.stages())
+    c.pressure_floor = std::max(c.pressure_floor, share_of_peak * stage.end_pressure);
+  return c;
+}
 
 Simulation::Simulation(Setup setup)
     : setup_(std::move(setup)),
@@ -96,6 +114,9 @@ Simulation::Simulation(Setup setup)
       pass_(setup_.contact, setup_.integration.threads) {
   if (setup_.particles.size() == 0)
     throw InputError("powder: no particles (the powder is empty); give a number of at least 1");
+  if (setup_.integration.method == IntegrationMethod::inertia_free && setup_.contact.friction)
+    throw InputError(
+        "integration.method: \"inertia_free\" has no rotations, which [contact.friction] needs; remove one");
   Particles& particles = setup_.particles;
   const auto order = spatial_order(particles);
   permute(particles.body, order);
@@ -139,6 +160,7 @@ Simulation::Simulation(Setup setup)
     state_.punch.mass = setup_.container.punch_settings.mass_fraction * setup_.integration.mass_scaling * powder_mass;
     state_.punch.area = punch_area();
   }
+  if (equalised()) control_ = step_control(setup_.integration, setup_.schedule);
   Vec3 unused;
   for (const auto& w : state_.walls.wall)
     for (std::size_t p = 0; p < n; ++p)
@@ -165,7 +187,8 @@ double Simulation::punch_area() const {
 }
 
 double Simulation::real_mass(std::size_t p) const {
-  return 1 / (state_.particles.body[p].inverse_mass * setup_.integration.mass_scaling);
+  const Particles& particles = state_.particles;
+  return setup_.materials[particles.material[p]].density * sphere_volume(particles.reference_radius[p]);
 }
 
 double Simulation::solid_volume() const {
@@ -235,49 +258,53 @@ void Simulation::rebuild_lists() {
   prune_near(0);
 }
 
-void Simulation::require_finite_positions() const {
-  for (std::size_t p = 0; p < state_.particles.size(); ++p)
-    if (!state_.particles.body[p].position.allFinite())
-      throw RunError("the position of particle " + std::to_string(state_.particles.id[p]) +
-                     " is no longer finite at process time " + std::to_string(state_.time) +
-                     " s; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
-}
-
 void Simulation::keep_list_fresh() {
-  const int threads = setup_.integration.threads;
   const bool first_necks =
       setup_.contact.sintering && state_.contacts.neck.empty() && state_.contacts.size() > 0 && table_.any_active();
   bool rebuilding = first_necks || state_.walls.age(state_.contacts.skin) >= 1;
-  if (!rebuilding && may_have_travelled_ < std::min(list_slack_, pass_.near().skin())) return;
-  const double travel = pass_.near().travel(state_.particles, state_.cell, state_.expansion, threads);
-  if (std::isnan(travel)) require_finite_positions();
-  may_have_travelled_ = travel;
-  const bool prune = travel >= pass_.near().skin();
-  // The list is rebuilt exactly when its own age says so, whatever was pruned since; travel only spares looking.
-  if (!rebuilding && (prune || travel >= list_slack_)) {
-    const double age = list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, threads);
-    if (std::isnan(age)) require_finite_positions();
+  // The list is rebuilt exactly when its own age says so, whatever was pruned since; the bound only spares looking.
+  const bool prune = pass_.near().empty() || !(may_have_travelled_ < pass_.near().skin());
+  if (!rebuilding && (prune || !(may_have_travelled_ < list_slack_))) {
+    const double age =
+        list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, setup_.integration.threads);
+    if (std::isnan(age)) require_finite(state_);
     rebuilding = age >= 1;
-    if (!rebuilding && prune) prune_near(age);
+    if (!rebuilding && prune)
+      prune_near(age);
+    else if (!rebuilding)
+      set_list_slack(age);
   }
   if (rebuilding) rebuild_lists();
 }
 
-void Simulation::prune_near(double list_age) {
-  pass_.near().prune(state_.contacts, state_.particles, state_.cell, state_.expansion);
-  pass_.near_changed(state_.contacts, state_.particles.size());
+/// Called after a move in which no particle was faster than `fastest` against the flow of its cell [m/s, s].
+void Simulation::note_travel(double fastest, double step) {
+  const double flow = state_.cell.periodic ? state_.cell.velocity_gradient.norm() : 0.0;
+  const double reach = 2 * state_.contacts.largest_radius + state_.contacts.skin;
+  const double above = flow > 0 ? 1.5 : 1 + 1e-9;  // strains between two prunings multiply
+  may_have_travelled_ += above * step * (2 * fastest + flow * reach);
+}
+
+void Simulation::set_list_slack(double list_age) {
   constexpr double rounding = 1e-9;  // of the sum of two distances
-  list_slack_ = (1 - list_age - rounding) * state_.contacts.skin;
+  list_slack_ = may_have_travelled_ + (1 - list_age - rounding) * state_.contacts.skin;
+}
+
+void Simulation::prune_near(double list_age) {
+  pass_.near().prune(state_.contacts, state_.particles, state_.cell);
+  pass_.near_changed(state_.contacts, state_.particles.size());
   may_have_travelled_ = 0;
+  set_list_slack(list_age);
 }
 
 void Simulation::compute_forces(Recording* record) {
   const PassTime clock{state_.time, state_.last_step};
+  StepStiffness* const stiffness = equalised() ? &stiffness_ : nullptr;
   pass_.compute(state_.particles, state_.contacts, state_.cell, table_, expansion_step_, clock,
-                record ? &record->contact : nullptr);
+                record ? &record->contact : nullptr, stiffness);
   if (!state_.walls.wall.empty())
     state_.walls.compute(state_.particles, table_, setup_.contact, expansion_step_, clock,
-                         record ? &record->wall : nullptr);
+                         record ? &record->wall : nullptr, stiffness);
   else if (record)
     record->wall.clear();
   for (const auto& load : setup_.loads) {
@@ -289,6 +316,13 @@ void Simulation::compute_forces(Recording* record) {
       state_.particles.force[p] += real_mass(p) * setup_.integration.gravity;
 }
 
+GuardView Simulation::guard_view() {
+  double growth = 0;
+  if (state_.last_step > 0)
+    for (double e : expansion_step_) growth = std::max(growth, std::abs(e) / state_.last_step);
+  return {setup_, state_, table_, pass_.near(), pressure(), growth};
+}
+
 StepLimit Simulation::step_limit() {
   const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
   return critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact, state_.walls, punch,
@@ -297,11 +331,17 @@ StepLimit Simulation::step_limit() {
 
 void Simulation::require_stable_step() {
   const double fixed = setup_.integration.fixed_step;
-  if (std::isnan(fixed)) return;
+  if (equalised()) return;
   const StepLimit limit = step_limit();
+  constexpr double most_steps = 1e14;  // years, even of two spheres at a tenth of a microsecond a step
+  const double step = std::isnan(fixed) ? setup_.integration.step_safety * limit.critical : fixed;
+  if (!((setup_.schedule.end() - state_.time) / step < most_steps))
+    throw InputError("integration.mass_scaling: the process of " + short_text(setup_.schedule.end()) +
+                     " s would take more than 1e14 steps of " + short_text(step) +
+                     " s; use a larger mass_scaling, or a shorter process");
   if (fixed > limit.critical)
-    throw InputError("integration.fixed_step: " + std::to_string(fixed) + " s is above the stability limit of " +
-                     std::to_string(limit.critical) + " s (particle " +
+    throw InputError("integration.fixed_step: " + short_text(fixed) + " s is above the stability limit of " +
+                     short_text(limit.critical) + " s (particle " +
                      std::to_string(state_.particles.id[limit.particle]) +
                      "); use a smaller one, a larger mass_scaling, or leave it out");
 }
@@ -311,10 +351,18 @@ double Simulation::choose_step() {
   // The viscosity of a young neck grows as a^4, by orders of magnitude in a few steps: its limit m/eta follows at once.
   const bool dashpots = setup_.contact.sintering && setup_.contact.sintering->model == SinteringModel::viscous &&
                         !state_.contacts.neck.empty() && std::isnan(settings.fixed_step);
-  const std::uint64_t interval = dashpots ? 1 : std::uint64_t(settings.limit_interval);
+  // A punch that strikes presses Hertz springs by a tenth of a radius within an interval, and stiffens them as much.
+  const double mean_radius = state_.contacts.skin / settings.skin;
+  constexpr double striking = 3e-3;  // of the mean radius in a step
+  const bool strikes = std::abs(state_.punch.velocity) * state_.last_step > striking * mean_radius;
+  const std::uint64_t interval = dashpots || strikes ? 1 : std::uint64_t(settings.limit_interval);
   if (state_.steps % interval == 0 || state_.stable_step == 0) {
     const StepLimit limit = step_limit();
     state_.critical_step = limit.critical;
+    if (settings.fixed_step > limit.critical && settings.guards.guarding == Guarding::on)
+      throw RunError("integration.fixed_step of " + short_text(settings.fixed_step) +
+                     " s has come above the stability limit of " + short_text(limit.critical) + " s (particle " +
+                     std::to_string(state_.particles.id[limit.particle]) + "); use a smaller one, or leave it out");
     state_.stable_step = settings.step_safety * limit.critical;
     if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
     if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
@@ -326,32 +374,118 @@ double Simulation::choose_step() {
   return left < 2 * state_.stable_step ? 0.5 * left : state_.stable_step;
 }
 
-void Simulation::evaluate(Recording* record) {
-  if (evaluated_) throw std::logic_error("Simulation::evaluate was called twice in one step");
+void Simulation::refresh() {
+  if (refreshed_) return;
   set_environment();
   keep_list_fresh();
+  refreshed_ = true;
+}
+
+void Simulation::plan_equalised_step() {
+  const auto& settings = setup_.integration;
+  if (state_.stable_step == 0) {
+    state_.stable_step = std::isnan(settings.fixed_step) ? control_.smallest_step : settings.fixed_step;
+    // The first pass needs masses for its dampers.
+    stiffness_.next_step = state_.stable_step;
+    stiffness_.of.assign(state_.particles.size(), StiffnessSum{});
+    equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety, 0, settings.threads);
+  }
+  state_.critical_step = state_.stable_step / settings.step_safety;
+  // Breakpoints of the schedule are met exactly: the last steps before one share the way.
+  constexpr double sharing = 10;
+  const double left = setup_.schedule.next_breakpoint(state_.time) - state_.time;
+  const double steps = std::max(1.0, std::ceil(left / state_.stable_step * (1 - 1e-12)));
+  stiffness_.next_step = steps <= sharing ? left / steps : state_.stable_step;
+}
+
+Column Simulation::column() const {
+  const double bottom = state_.walls.wall[*wall("bottom")].point[2];
+  return {bottom, state_.walls.wall[*punch_wall_].point[2] - bottom};
+}
+
+void Simulation::equalise_inertia() {
+  const auto& settings = setup_.integration;
+  Punch& punch = state_.punch;
+  equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety,
+           punch.mass > 0 ? carriage_share : 0.0, settings.threads);
+  if (punch.mass > 0) {
+    const double k = column_stiffness(state_.particles, stiffness_, column());
+    // Its own damper has one end in the world and counts half as much as one between two masses.
+    const double with_damper = (1 + 1 / carriage_share) * k + 2 * punch.damping / stiffness_.next_step;
+    const double mass = 0.5 * mass_for_step(with_damper, stiffness_.next_step, settings.step_safety);
+    if (mass > 0) punch.mass = mass;
+    punch.tune(k, setup_.container.punch_settings.damping_ratio);
+  }
+  if (state_.steps % control_interval != 0) return;
+  const double pressure = std::max(contact_pressure(state_.particles, stiffness_), control_.pressure_floor);
+  measure_inertia(state_.control, state_.particles, state_.cell, pressure);
+  if (std::isnan(settings.fixed_step))
+    state_.stable_step = controlled_step(control_, state_.control, state_.stable_step);
+}
+
+void Simulation::evaluate(Recording* record) {
+  if (evaluated_) throw std::logic_error("Simulation::evaluate was called twice in one step");
+  refresh();
+  if (equalised()) plan_equalised_step();
   compute_forces(record);
+  guards_.look(guard_view());
   evaluated_ = true;
 }
 
-void Simulation::move() {
-  if (!evaluated_) throw std::logic_error("Simulation::move needs evaluate before it");
-  evaluated_ = false;
-  const double step = choose_step();
+bool Simulation::moves_without_inertia() const {
+  if (setup_.integration.method != IntegrationMethod::inertia_free) return false;
+  return setup_.integration.inertia_free.from == InertiaFreeFrom::start || !state_.contacts.neck.empty();
+}
+
+/// Real masses, so that dampers made from them carry nothing, and no vibration left.
+void Simulation::drop_inertia() {
+  for (std::size_t p = 0; p < state_.particles.size(); ++p) {
+    state_.particles.body[p].inverse_mass = 1 / real_mass(p);
+    state_.particles.body[p].velocity.setZero();
+  }
+  state_.punch.velocity = 0;
+  state_.inertia_free = true;
+}
+
+double Simulation::leapfrog_step() {
+  const double step = equalised() ? stiffness_.next_step : choose_step();
+  if (equalised()) equalise_inertia();
+  if (!(state_.time + step > state_.time))
+    throw RunError("the step of " + short_text(step) + " s no longer moves the process time of " +
+                   short_text(state_.time) +
+                   " s on; the contacts have become too stiff or the masses too small, try "
+                   "a larger mass_scaling");
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   if (state_.punch.mass > 0) {
-    state_.punch.kick(state_.walls.normal_force()[*punch_wall_], pressure(), kick_step);
+    const double before = state_.punch.velocity;
+    double force = state_.walls.normal_force()[*punch_wall_];
+    if (equalised()) force += column_force(state_.particles, column());
+    state_.punch.kick(force, pressure(), kick_step);
+    if (equalised()) carry(state_.particles, column(), state_.punch.velocity - before, setup_.integration.threads);
     state_.walls.wall[*punch_wall_].velocity = Vec3(0, 0, state_.punch.velocity);
   }
   const double fastest =
       leapfrog(state_.particles, state_.cell, {kick_step, step}, setup_.integration.drag, setup_.integration.threads);
-  const double flow = state_.cell.periodic ? state_.cell.velocity_gradient.norm() : 0.0;
-  const double reach = 2 * state_.contacts.largest_radius + state_.contacts.skin;
-  const double above = flow > 0 ? 1.5 : 1 + 1e-9;  // strains between two prunings multiply
-  may_have_travelled_ += above * step * (2 * fastest + flow * reach);
+  note_travel(fastest, step);
   for (auto& w : state_.walls.wall) {
     w.point += step * w.velocity;
     w.radius += step * w.radius_rate;
+  }
+  return step;
+}
+
+void Simulation::move() {
+  if (!evaluated_) throw std::logic_error("Simulation::move needs evaluate before it");
+  evaluated_ = refreshed_ = false;
+  double step;
+  if (moves_without_inertia()) {
+    if (!state_.inertia_free) drop_inertia();
+    const double longest = setup_.integration.largest_step;
+    step = inertia_free_.move(state_, setup_, table_, state_.punch.mass > 0 ? punch_wall_ : std::nullopt,
+                              std::isnan(longest) ? setup_.schedule.end() : longest);
+    may_have_travelled_ = std::numeric_limits<double>::infinity();
+  } else {
+    step = leapfrog_step();
   }
   const double breakpoint = setup_.schedule.next_breakpoint(state_.time);
   state_.time = state_.time + step >= breakpoint ? breakpoint : state_.time + step;
@@ -371,7 +505,8 @@ bool Simulation::all_at_equilibrium() const {
 }
 
 void Simulation::restore(State state) {
-  evaluated_ = false;
+  evaluated_ = refreshed_ = false;
+  guards_.forget();
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
   table_unsettled_ = true;
@@ -400,7 +535,7 @@ std::size_t Simulation::bytes() const {
   const ContactList& c = state_.contacts;
   return of(p.body) + of(p.reference_radius) + of(p.material) + of(p.id) + of(p.force) + of(p.angular_velocity) +
          of(p.torque) + of(c.first) + of(c.second) + of(c.tangential) + of(c.neck) + of(c.reference_position) +
-         of(state_.walls.contacts()) + pass_.bytes();
+         of(state_.walls.contacts()) + pass_.bytes() + inertia_free_.bytes();
 }
 
 }  // namespace densify::dem

@@ -6,6 +6,10 @@
 
 #include "base/schedule.h"
 #include "dem/boundary/punch.h"
+#include "dem/integrate/guards.h"
+#include "dem/integrate/inertia.h"
+#include "dem/integrate/inertia_free.h"
+#include "dem/integrate/step_control.h"
 #include "dem/integrate/time_step.h"
 
 namespace densify::dem {
@@ -30,16 +34,22 @@ struct Load {
 };
 
 struct IntegrationSettings {
+  IntegrationMethod method = IntegrationMethod::leapfrog;
+  InertiaFreeSettings inertia_free;
   StepRule rule = StepRule::particle_sum;
   double step_safety = 0.8;
-  double fixed_step = unset;    ///< replaces the rule [s]
-  double largest_step = unset;  ///< [s]
-  int limit_interval = 20;      ///< steps between two evaluations of the limit
-  double mass_scaling = 1;      ///< alpha_m (4.80)
-  double skin = 0.2;            ///< reach of the neighbour list over the mean radius
-  double drag = 0;              ///< mass-proportional damping rate [1/s], for packing
-  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]
+  Inertia inertia = Inertia::uniform;
+  double fixed_step = unset;       ///< replaces the rule; with equalised inertia the step dt* of the whole run [s]
+  double largest_step = unset;     ///< [s]
+  double smallest_step = unset;    ///< of the step control [s]; unset: largest_step / 200
+  double inertia_measure = unset;  ///< inertial number that the step control of equalised inertia keeps
+  int limit_interval = 20;         ///< steps between two evaluations of the limit
+  double mass_scaling = 1;         ///< alpha_m (4.80)
+  double skin = 0.2;               ///< reach of the neighbour list over the mean radius
+  double drag = 0;                 ///< mass-proportional damping rate [1/s], for packing
+  Vec3 gravity = Vec3::Zero();     ///< [m/s^2]
   int threads = 1;
+  GuardSettings guards;
 };
 
 /// Everything a simulation is made from.
@@ -70,7 +80,9 @@ struct State {
   double stable_step = 0;         ///< safety x critical of the last evaluation [s]
   double critical_step = 0;       ///< [s]
   std::uint64_t steps = 0;
+  bool inertia_free = false;         ///< moves without inertia by now, masses are real
   std::vector<double> active_since;  ///< of each pair of materials [s]
+  ControlState control;              ///< equalised inertia only
 };
 
 /// What a measure reads after a recorded pass.
@@ -79,11 +91,17 @@ struct Recording {
   std::vector<WallRecord> wall;
 };
 
+/// The limits of the step control that a scene's integration leaves open.
+StepControl step_control(const IntegrationSettings&, const Schedule&);
+
 class Simulation {
  public:
   /// Throws InputError when the setup is inconsistent (missing property, particle outside its container, ...).
   explicit Simulation(Setup setup);
 
+  /// What comes before the forces of a step: environment and neighbour lists at the present time.  `evaluate` does it;
+  /// who calls it before can tell the time of lists from that of forces.
+  void refresh();
   /// First half of a step: environment, lists and forces at the present time.  With `record` given it also fills it;
   /// the trajectory is the same with and without.  Once a step, since histories advance: a second call before `move`
   /// throws std::logic_error.  Throws RunError when the state is no longer sound.
@@ -98,9 +116,11 @@ class Simulation {
 
   /// Limit of the step in the present state [s], before the safety factor.
   StepLimit step_limit();
-  /// Throws InputError when a fixed step is above the present limit.
+  /// Throws InputError when a fixed step is above the present limit, or when the schedule takes more steps than any
+  /// computer will do.
   void require_stable_step();
 
+  bool equalised() const { return setup_.integration.inertia == Inertia::equalised && !state_.inertia_free; }
   bool finished() const { return state_.time >= setup_.schedule.end(); }
   /// True when every neck of a packing that has necks is at equilibrium.
   bool all_at_equilibrium() const;
@@ -110,7 +130,15 @@ class Simulation {
   const PairTable& table() const { return table_; }
   /// Replaces the state by a checkpoint's.
   void restore(State state);
-  State& mutable_state() { return state_; }
+  /// Whoever changes the state breaks its balance of energy, so that the guards begin anew.
+  State& mutable_state() {
+    guards_.forget();
+    may_have_travelled_ = std::numeric_limits<double>::infinity();
+    return state_;
+  }
+  /// Throws RunError when the state is not sound, between two looks of the guards: before it is written anywhere.
+  void require_sound() { guards_.require_sound(guard_view()); }
+  const Guards& guards() const { return guards_; }
   void set_gravity(const Vec3& g) { setup_.integration.gravity = g; }
 
   double temperature() const { return setup_.schedule.temperature(state_.time); }
@@ -122,7 +150,8 @@ class Simulation {
   std::optional<std::size_t> wall(std::string_view name) const;
   /// Present area under the punch, the hot one in an expanding die; 0 without lateral walls [m^2].
   double punch_area() const;
-  std::size_t bytes() const;         ///< memory of state and scratch
+  std::size_t bytes() const;  ///< memory of state and scratch
+  const InertiaFreeCount& inertia_free_count() const { return inertia_free_.count(); }
   std::size_t contacts_now() const;  ///< touching or necked pairs
 
  private:
@@ -130,19 +159,31 @@ class Simulation {
   void keep_list_fresh();
   void compute_forces(Recording* record);
   double choose_step();
+  void plan_equalised_step();
+  void equalise_inertia();
+  Column column() const;
+  bool moves_without_inertia() const;
+  void drop_inertia();
+  double leapfrog_step();
   void rebuild_lists();
   void prune_near(double list_age);
-  void require_finite_positions() const;
+  void set_list_slack(double list_age);
+  void note_travel(double fastest, double step);
+  GuardView guard_view();
 
   Setup setup_;
   PairTable table_;
   ForcePass pass_;
+  InertiaFree inertia_free_;
   State state_;
+  Guards guards_;
+  bool refreshed_ = false;       // between refresh() and move()
   bool evaluated_ = false;       // between evaluate() and move()
   bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
-  double list_slack_ = 0;        // what may be travelled since the last pruning before the list can be too old [m]
-  // What surfaces may have approached since the last pruning, from above: no look at all particles before it matters.
-  double may_have_travelled_ = std::numeric_limits<double>::infinity();  // [m]
+  StepStiffness stiffness_;      // equalised inertia only: of the last pass
+  StepControl control_;
+  // How far surfaces may have approached since the last pruning, from above, and what the list still allows [m].
+  double may_have_travelled_ = 0, list_slack_ = 0;
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
 };

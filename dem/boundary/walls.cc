@@ -19,16 +19,29 @@ double Walls::gap(const Wall& w, const Vec3& x, Vec3& toward_wall) {
   return w.radius - rho;
 }
 
+namespace {
+
+[[noreturn]] void refuse_escape(std::uint32_t id, const Wall& wall) {
+  throw RunError("particle " + std::to_string(id) + " has left the " + wall.name +
+                 ": its centre is beyond the wall; the step or the mass factor is too large, or the wall too soft");
+}
+
+}  // namespace
+
+void Walls::require_inside(const Particles& particles) const {
+  Vec3 n;
+  for (const auto& c : contacts_)
+    if (gap(wall[c.wall], particles.body[c.particle].position, n) < 0)
+      refuse_escape(particles.id[c.particle], wall[c.wall]);
+}
+
 void Walls::rebuild(const Particles& particles, double skin) {
   std::vector<WallContact> fresh;
   Vec3 n;
   for (std::size_t w = 0; w < wall.size(); ++w)
     for (std::size_t p = 0; p < particles.size(); ++p) {
       const double g = gap(wall[w], particles.body[p].position, n);
-      if (g < 0)
-        throw RunError(
-            "particle " + std::to_string(particles.id[p]) + " has left the " + wall[w].name +
-            ": its centre is beyond the wall; the step or the mass factor is too large, or the wall too soft");
+      if (g < 0) refuse_escape(particles.id[p], wall[w]);
       if (g < particles.body[p].radius + skin) fresh.push_back({std::uint32_t(p), std::uint8_t(w), Vec3::Zero()});
     }
   auto less = [](const WallContact& a, const WallContact& b) {
@@ -59,35 +72,16 @@ double Walls::modulus(const PairTable& table, const ContactModel& model, std::ui
   return 4.0 / 3 * model.stiffness_factor / (one + wall_compliance);
 }
 
-namespace {
-
-template <class Visit>
-void with_wall_law(const ContactModel& model, double modulus, Visit&& visit) {
-  if (model.elasticity == Elasticity::linear)
-    visit(KelvinVoigt<LinearSpring>{{model.normal_stiffness}, model.damping_ratio});
-  else
-    visit(KelvinVoigt<HertzSpring>{{modulus, 0.0}, model.damping_ratio});
-}
-
-NormalInput wall_input(const Body& b, double gap, double rate, PassTime clock) {
-  NormalInput in;
-  in.overlap = gap - b.radius;
-  in.rate = rate;
-  in.elastic_radius = b.radius;
-  in.sintering_radius = 0;
-  in.reduced_mass = 1 / b.inverse_mass;
-  in.step = clock.step;
-  in.time = clock.time;
-  return in;
-}
-
-}  // namespace
-
 void Walls::compute(Particles& particles, const PairTable& table, const ContactModel& model,
-                    const std::vector<double>& expansion_step, PassTime clock, std::vector<WallRecord>* record) {
+                    const std::vector<double>& expansion_step, PassTime clock, std::vector<WallRecord>* record,
+                    StepStiffness* step_stiffness) {
   force_.assign(wall.size(), Vec3::Zero());
   normal_force_.assign(wall.size(), 0);
   if (record) record->clear();
+  if (step_stiffness) {
+    stiffness_.assign(wall.size(), 0);
+    step_stiffness_.assign(wall.size(), 0);
+  }
   moduli_.resize(table.materials());
   for (std::size_t m = 0; m < moduli_.size(); ++m) moduli_[m] = modulus(table, model, std::uint8_t(m));
   Vec3 n;
@@ -125,13 +119,43 @@ void Walls::compute(Particles& particles, const PairTable& table, const ContactM
       particles.force[c.particle] += f;
       force_[c.wall] -= f;
       normal_force_[c.wall] -= fn;
+      if (step_stiffness) {
+        const double k = law.spring.tangent(in.overlap, in.elastic_radius);
+        const double along = law.step_stiffness(in, step_stiffness->next_step);
+        const double across =
+            model.friction ? tangential_step_stiffness(*model.friction, k, in.reduced_mass, step_stiffness->next_step)
+                           : 0.0;
+        StiffnessSum& sum = step_stiffness->of[c.particle];
+        sum.add(along, across, n);
+        sum.force += std::abs(fn);
+        stiffness_[c.wall] += k;
+        step_stiffness_[c.wall] += along;
+      }
       if (record) record->push_back({c.particle, c.wall, f, g * n, law.spring.energy(in.overlap, in.elastic_radius)});
     });
   }
 }
 
+double Walls::elastic_energy(const Particles& particles, const PairTable& table, const ContactModel& model) const {
+  double sum = 0;
+  Vec3 n;
+  for (const auto& c : contacts_) {
+    const Body& b = particles.body[c.particle];
+    const double g = gap(wall[c.wall], b.position, n);
+    if (g >= b.radius) continue;
+    const NormalInput in = wall_input(b, g, 0, {0, 0});
+    with_wall_law(model, modulus(table, model, particles.material[c.particle]), [&](const auto& law) {
+      sum += law.spring.energy(in.overlap, in.elastic_radius);
+      if (model.friction)
+        sum += 0.5 * model.friction->tangential_stiffness_ratio * law.spring.tangent(in.overlap, in.elastic_radius) *
+               c.tangential.squaredNorm();
+    });
+  }
+  return sum;
+}
+
 void Walls::add_stiffness(const Particles& particles, const PairTable& table, const ContactModel& model,
-                          std::vector<double>& stiffness, std::vector<double>& damping) {
+                          std::vector<StiffnessSum>& stiffness, std::vector<StiffnessSum>& damping) {
   stiffness_.assign(wall.size(), 0);
   damping_.assign(wall.size(), 0);
   Vec3 n;
@@ -141,9 +165,9 @@ void Walls::add_stiffness(const Particles& particles, const PairTable& table, co
     if (g >= b.radius) continue;
     const NormalInput in = wall_input(b, g, 0, {0, 0});
     with_wall_law(model, modulus(table, model, particles.material[c.particle]), [&](const auto& law) {
-      const Linearisation l = law.linearise(in), whole = with_tangential_share(l, model, in.reduced_mass);
-      stiffness[c.particle] += whole.stiffness;
-      damping[c.particle] += whole.damper;
+      const Linearisation l = law.linearise(in), across = tangential_share(l, model, in.reduced_mass);
+      stiffness[c.particle].add(l.stiffness, across.stiffness, n);
+      damping[c.particle].add(l.damper, across.damper, n);
       stiffness_[c.wall] += l.stiffness;
       damping_[c.wall] += l.damper;
     });

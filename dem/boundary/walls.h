@@ -57,9 +57,16 @@ class Walls {
   /// Throws RunError when a particle's centre is beyond a wall.
   void rebuild(const Particles&, double skin);
 
-  /// Adds the wall forces to the particles and sums them per wall.
+  /// Adds the wall forces to the particles and sums them per wall; with `step_stiffness` given, adds to its sums too
+  /// and makes stiffness() and step_stiffness() those of this pass.
   void compute(Particles&, const PairTable&, const ContactModel&, const std::vector<double>& expansion_step, PassTime,
-               std::vector<WallRecord>* record);
+               std::vector<WallRecord>* record, StepStiffness* step_stiffness);
+
+  /// Throws RunError when the centre of a listed particle is beyond its wall.
+  void require_inside(const Particles&) const;
+
+  /// Stored in the springs of all wall contacts, normal and tangential [J].
+  double elastic_energy(const Particles&, const PairTable&, const ContactModel&) const;
 
   /// Share of the skin that wall motion since the last rebuild has used up, on its own.
   double age(double skin) const;
@@ -68,13 +75,18 @@ class Walls {
   const std::vector<Vec3>& force() const { return force_; }
   /// Sum of the normal force components on each wall, pushing outward positive [N].
   const std::vector<double>& normal_force() const { return normal_force_; }
-  /// Sum of tangent stiffness over each wall's contacts in the last call of `add_stiffness` [N/m].
+  /// Sum of tangent stiffness over each wall's contacts in the last call of `add_stiffness` or such a pass [N/m].
   const std::vector<double>& stiffness() const { return stiffness_; }
   const std::vector<double>& damping() const { return damping_; }
+  /// Sum of the contacts' share in StepStiffness over each wall [N/m].
+  const std::vector<double>& step_stiffness() const { return step_stiffness_; }
 
   /// Adds stiffness and damping of the wall contacts to the particles' sums, for the time step limit.
-  void add_stiffness(const Particles&, const PairTable&, const ContactModel&, std::vector<double>& stiffness,
-                     std::vector<double>& damping);
+  void add_stiffness(const Particles&, const PairTable&, const ContactModel&, std::vector<StiffnessSum>& stiffness,
+                     std::vector<StiffnessSum>& damping);
+
+  /// (4/3) E* of a particle of a material against the walls, stiffness factor included [Pa].
+  double modulus(const PairTable&, const ContactModel&, std::uint8_t material) const;
 
   std::vector<WallContact>& contacts() { return contacts_; }
   const std::vector<WallContact>& contacts() const { return contacts_; }
@@ -82,14 +94,34 @@ class Walls {
   const std::vector<Wall>& reference() const { return reference_; }
 
  private:
-  double modulus(const PairTable&, const ContactModel&, std::uint8_t material) const;
-
   WallMaterial material_;
   std::vector<WallContact> contacts_;
   std::vector<Wall> reference_;  // walls when the contacts were listed
   std::vector<Vec3> force_;
-  std::vector<double> normal_force_, stiffness_, damping_;
+  std::vector<double> normal_force_, stiffness_, damping_, step_stiffness_;
   std::vector<double> moduli_;  // of each material against the walls, of the last pass [Pa]
 };
+
+/// Calls visit(law) with the law of a wall contact; `modulus` as of Walls::modulus [Pa].
+template <class Visit>
+void with_wall_law(const ContactModel& model, double modulus, Visit&& visit) {
+  if (model.elasticity == Elasticity::linear)
+    visit(KelvinVoigt<LinearSpring>{{model.normal_stiffness}, model.damping_ratio});
+  else
+    visit(KelvinVoigt<HertzSpring>{{modulus, 0.0}, model.damping_ratio});
+}
+
+/// The input of a wall contact's law; `gap` from the centre to the wall's surface [m], `rate` of it less growth [m/s].
+inline NormalInput wall_input(const Body& b, double gap, double rate, PassTime clock) {
+  NormalInput in;
+  in.overlap = gap - b.radius;
+  in.rate = rate;
+  in.elastic_radius = b.radius;
+  in.sintering_radius = 0;
+  in.reduced_mass = 1 / b.inverse_mass;
+  in.step = clock.step;
+  in.time = clock.time;
+  return in;
+}
 
 }  // namespace densify::dem

@@ -59,7 +59,8 @@ void Chunks::build(const ContactList& list, const NearList& near, std::size_t pa
     std::copy(mine.begin(), mine.end(), others_.begin() + std::ptrdiff_t(others_begin_[c]));
     for (std::size_t at = 0, owner = 0; at < mine.size();) {
       while (mine[at] >= begin(owner + 1)) ++owner;
-      const std::size_t next = std::size_t(std::lower_bound(mine.begin() + std::ptrdiff_t(at), mine.end(), begin(owner + 1)) - mine.begin());
+      const std::size_t next =
+          std::size_t(std::lower_bound(mine.begin() + std::ptrdiff_t(at), mine.end(), begin(owner + 1)) - mine.begin());
       incoming_[owner].push_back({others_begin_[c] + at, others_begin_[c] + next});
       at = next;
     }

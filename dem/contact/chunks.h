@@ -28,7 +28,9 @@ class Chunks {
 
   /// The near pairs of a bucket in a chunk.
   std::size_t near_begin(std::size_t bucket, std::size_t chunk) const { return near_begin_[bucket * count() + chunk]; }
-  std::size_t near_end(std::size_t bucket, std::size_t chunk) const { return near_begin_[bucket * count() + chunk + 1]; }
+  std::size_t near_end(std::size_t bucket, std::size_t chunk) const {
+    return near_begin_[bucket * count() + chunk + 1];
+  }
   /// Of each near pair: place of j among the sums of the chunk, its own particles first.
   const std::vector<std::uint32_t>& slots() const { return slots_; }
 

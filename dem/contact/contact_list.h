@@ -8,9 +8,9 @@
 
 namespace densify::dem {
 
-/// Neighbour pairs i < j (or i == j across a periodic face), sorted by bucket, then by groups of `group` particles i, and
-/// within a group in rounds: the first pair of each i, the second of each, and so on.  Neighbours in the list then add
-/// to different particles, and a pass does not wait for its own last sum.
+/// Neighbour pairs i < j (or i == j across a periodic face), sorted by bucket, then by groups of `group` particles i,
+/// and within a group in rounds: the first pair of each i, the second of each, and so on.  Neighbours in the list then
+/// add to different particles, and a pass does not wait for its own last sum.
 struct ContactList {
   /// All pairs of one pair of materials.
   struct Bucket {

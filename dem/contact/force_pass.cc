@@ -1,5 +1,7 @@
 #include "dem/contact/force_pass.h"
 
+#include <algorithm>
+
 #include "dem/contact/single_pairs.h"
 #include "dem/parallel.h"
 
@@ -14,7 +16,7 @@ void ForcePass::near_changed(const ContactList& list, std::size_t particles) {
 }
 
 void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cell, const PairTable& table,
-                        const std::vector<double>& expansion_step, PassTime clock) {
+                        const std::vector<double>& expansion_step, PassTime clock, const StepStiffness* stiffness) {
   if (near_.empty()) {
     near_.take_all(list);
     near_changed(list, particles.size());
@@ -28,6 +30,7 @@ void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cel
   auto growth = [&](std::uint8_t m) { return clock.step > 0 ? expansion_step[m] / clock.step : 0.0; };
   const bool deforming = cell.periodic && !cell.velocity_gradient.isZero(0);
   const bool necks = !list.neck.empty(), hertz = model_.elasticity == Elasticity::hertz;
+  const std::size_t stride = (model_.friction ? 8 : 4) + (stiffness ? 8 : 0);
   const SinglePairs singles = single_pairs(necks, hertz, model_.friction.has_value());
   buckets_.resize(list.buckets.size());
   for (std::size_t b = 0; b < buckets_.size(); ++b) {
@@ -57,20 +60,43 @@ void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cel
                   growth(named.material_b),
                   named.material_a,
                   std::visit([](const auto& law) -> const void* { return &law; }, bucket.law),
-                  {model_.friction.value_or(FrictionModel{}), model_.hertz_radius == HertzRadius::equivalent, clock.step,
-                   clock.time},
+                  {model_.friction.value_or(FrictionModel{}), model_.hertz_radius == HertzRadius::equivalent,
+                   clock.step, clock.time},
                   nullptr,
+                  stride,
                   0,
+                  stiffness ? stiffness->next_step : 0.0,
                   singles.general};
   }
 }
 
+namespace {
+
+/// A row of sums as it is kept for other chunks: without its zeros.
+struct KeptRow {
+  bool rotates, stiffens;
+
+  std::size_t size() const { return 3 + (rotates ? 3 : 0) + (stiffens ? 7 : 0); }
+  void keep(const double* row, double* kept) const {
+    kept = std::copy_n(row, 3, kept);
+    if (rotates) kept = std::copy_n(row + 4, 3, kept);
+    if (stiffens) std::copy_n(row + (rotates ? 8 : 4), 7, kept);
+  }
+};
+
+void add(StiffnessSum& sum, const double* v) {
+  sum.xx += v[0], sum.yy += v[1], sum.zz += v[2], sum.xy += v[3], sum.xz += v[4], sum.yz += v[5], sum.force += v[6];
+}
+
+}  // namespace
+
 void ForcePass::run_chunk(std::size_t chunk, Particles& particles, std::vector<double>& sums,
-                          std::vector<ContactRecord>* record) {
+                          std::vector<ContactRecord>* record, StepStiffness* stiffness) {
   const bool rotates = model_.friction.has_value();
-  const std::size_t stride = rotates ? 8 : 4, kept = rotates ? 6 : 3;
+  const KeptRow kept{rotates, stiffness != nullptr};
   const std::uint32_t first = chunks_.begin(chunk), own = chunks_.size(chunk);
   const std::size_t others = chunks_.others_begin(chunk), other_count = chunks_.others_begin(chunk + 1) - others;
+  const std::size_t stride = (rotates ? 8 : 4) + (stiffness ? 8 : 0);
   sums.assign(stride * (own + other_count), 0.0);
   for (std::size_t b = 0; b < buckets_.size(); ++b) {
     const Law& law = buckets_[b].law;
@@ -88,41 +114,41 @@ void ForcePass::run_chunk(std::size_t chunk, Particles& particles, std::vector<d
   for (std::uint32_t p = first; p < first + own; ++p, row += stride) {
     particles.force[p] = Vec3(row[0], row[1], row[2]);
     if (rotates) particles.torque[p] = Vec3(row[4], row[5], row[6]);
+    if (stiffness) add(stiffness->of[p] = StiffnessSum{}, row + stride - 8);
   }
-  double* out = for_others_.data() + kept * others;
-  for (std::size_t k = 0; k < other_count; ++k, row += stride, out += kept) {
-    for (int x = 0; x < 3; ++x) out[x] = row[x];
-    if (rotates)
-      for (int x = 0; x < 3; ++x) out[3 + x] = row[4 + x];
-  }
+  double* out = for_others_.data() + kept.size() * others;
+  for (std::size_t k = 0; k < other_count; ++k, row += stride, out += kept.size()) kept.keep(row, out);
 }
 
-void ForcePass::add_incoming(std::size_t chunk, Particles& particles) const {
+void ForcePass::add_incoming(std::size_t chunk, Particles& particles, StepStiffness* stiffness) const {
   const bool rotates = model_.friction.has_value();
-  const std::size_t kept = rotates ? 6 : 3;
+  const KeptRow kept{rotates, stiffness != nullptr};
   for (const auto& part : chunks_.incoming(chunk))
     for (std::size_t k = part.begin; k < part.end; ++k) {
-      const double* const row = for_others_.data() + kept * k;
+      const double* const row = for_others_.data() + kept.size() * k;
       const std::uint32_t p = chunks_.others()[k];
       particles.force[p] += Vec3(row[0], row[1], row[2]);
       if (rotates) particles.torque[p] += Vec3(row[3], row[4], row[5]);
+      if (stiffness) add(stiffness->of[p], row + (rotates ? 6 : 3));
     }
 }
 
 void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cell, const PairTable& table,
-                        const std::vector<double>& expansion_step, PassTime clock, std::vector<ContactRecord>* record) {
-  prepare(particles, list, cell, table, expansion_step, clock);
+                        const std::vector<double>& expansion_step, PassTime clock, std::vector<ContactRecord>* record,
+                        StepStiffness* stiffness) {
+  prepare(particles, list, cell, table, expansion_step, clock, stiffness);
   if (record) record->assign(list.size(), ContactRecord{});
-  for_others_.resize((model_.friction ? 6 : 3) * chunks_.others().size());
+  if (stiffness) stiffness->of.resize(particles.size());
+  for_others_.resize(KeptRow{model_.friction.has_value(), stiffness != nullptr}.size() * chunks_.others().size());
   const int threads = int(std::min(std::size_t(threads_), chunks_.count()));
   sums_.resize(std::size_t(threads));
   in_parts(std::size_t(threads), threads, [&](std::size_t t, std::size_t) {
-    for (std::size_t c = detail::part(chunks_.count(), int(t), threads); c < detail::part(chunks_.count(), int(t) + 1, threads);
-         ++c)
-      run_chunk(c, particles, sums_[t], record);
+    const std::size_t end = detail::part(chunks_.count(), int(t) + 1, threads);
+    for (std::size_t c = detail::part(chunks_.count(), int(t), threads); c < end; ++c)
+      run_chunk(c, particles, sums_[t], record, stiffness);
   });
   in_parts(chunks_.count(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) add_incoming(c, particles);
+    for (std::size_t c = begin; c < end; ++c) add_incoming(c, particles, stiffness);
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include "dem/contact/chunks.h"
 #include "dem/contact/kernel.h"
+#include "dem/contact/step_stiffness.h"
 #include "dem/material/pair_table.h"
 
 namespace densify::dem {
@@ -31,15 +32,15 @@ struct ContactRecord {
 /// Computes forces (and torques) of all pairs into Particles::force (::torque), overwriting them.
 ///
 /// `expansion_step[m]` is the relative growth of the radius of material m since the last pass, (r_new - r_old)/r_new.
-/// With `record` given the pass also fills it, one entry a pair; forces are bit for bit the same with and without it,
-/// for every number of threads and with all kernels.
+/// With `record` given the pass also fills it, one entry a pair, and with `stiffness` given its sums for its next_step;
+/// forces are bit for bit the same with and without them, and all is for every number of threads and with all kernels.
 class ForcePass {
  public:
   ForcePass(const ContactModel& model, int threads, const KernelTable& kernels = chosen_kernels())
       : model_(model), threads_(threads), kernels_(&kernels) {}
 
   void compute(Particles&, ContactList&, const Cell&, const PairTable&, const std::vector<double>& expansion_step,
-               PassTime, std::vector<ContactRecord>* record);
+               PassTime, std::vector<ContactRecord>* record, StepStiffness* stiffness);
 
   /// To be called after every rebuild of the list; the next passes visit all its pairs until near() is pruned.
   void list_changed(const ContactList&, std::size_t particles);
@@ -63,9 +64,9 @@ class ForcePass {
   };
 
   void prepare(Particles&, ContactList&, const Cell&, const PairTable&, const std::vector<double>& expansion_step,
-               PassTime);
-  void run_chunk(std::size_t chunk, Particles&, std::vector<double>& sums, std::vector<ContactRecord>* record);
-  void add_incoming(std::size_t chunk, Particles&) const;
+               PassTime, const StepStiffness*);
+  void run_chunk(std::size_t chunk, Particles&, std::vector<double>& sums, std::vector<ContactRecord>*, StepStiffness*);
+  void add_incoming(std::size_t chunk, Particles&, StepStiffness*) const;
 
   ContactModel model_;
   int threads_;
@@ -73,7 +74,7 @@ class ForcePass {
   NearList near_;
   Chunks chunks_;
   std::array<double, 4 * 27> shifts_{};  // of the image codes in the cell below [m]
-  Mat3 shifts_h_ = Mat3::Zero();       // [m]
+  Mat3 shifts_h_ = Mat3::Zero();         // [m]
   std::vector<Bucket> buckets_;
   std::vector<std::vector<double>> sums_;  // of the chunk at work, for each thread
   std::vector<double> for_others_;         // forces (and torques) of chunks on particles of other chunks

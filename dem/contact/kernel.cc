@@ -75,7 +75,8 @@ inline Necks read_necks(const Law& law, const KernelJob& job, const Block& block
   const auto is = [&](NeckPhase p) { return Condition{phase == std::int64_t(p)}; };
   n.phase = {is(NeckPhase::loose), is(NeckPhase::sintering), is(NeckPhase::bonded), is(NeckPhase::dormant)};
   n.necked = {~n.phase.loose.v};
-  const Condition settled = law.active ? n.phase.sintering | n.phase.bonded : n.phase.loose | n.phase.bonded | n.phase.dormant;
+  const Condition settled =
+      law.active ? n.phase.sintering | n.phase.bonded : n.phase.loose | n.phase.bonded | n.phase.dormant;
   n.unsettled = {~settled.v};
   return n;
 }
@@ -153,8 +154,8 @@ inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int c
     Triple slip = rows3(job.tangential, block.place);
     Condition sliding_contact = present;
     if constexpr (has_necks<Law>) sliding_contact = present & necks.phase.loose;
-    FrictionOf<Numbers> f = friction_of(law, job.uniform, pair, frame, normal, spin,
-                                        select(sliding_contact, Numbers(1.0), none), slip);
+    FrictionOf<Numbers> f =
+        friction_of(law, job.uniform, pair, frame, normal, spin, select(sliding_contact, Numbers(1.0), none), slip);
     force = force + f.force;
     Row couples[width];
     rows_of<width>({f.couple.x, f.couple.y, f.couple.z, none}, couples);
@@ -167,6 +168,19 @@ inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int c
   Row force_i[width], force_j[width];
   rows_of<width>({force.x, force.y, force.z, none}, force_i);
   for (int l = 0; l < width; ++l) force_j[l] = force_i[l].opposite();
+
+  Row stiff[2][width];
+  if (job.next_step > 0) {
+    Numbers along;
+    if constexpr (has_necks<Law>)
+      along = law.step_stiffness(frame.in, neck, necks.phase, job.next_step);
+    else
+      along = law.step_stiffness(frame.in, job.next_step);
+    const auto s = stiffness_of<friction>(law, job.uniform, frame, normal, along, job.next_step);
+    const auto present_only = [&](const Numbers& x) { return select(present, x, none); };
+    rows_of<width>({present_only(s.xx), present_only(s.yy), present_only(s.zz), present_only(s.xy)}, stiff[0]);
+    rows_of<width>({present_only(s.xz), present_only(s.yz), present_only(s.force), none}, stiff[1]);
+  }
 
   if constexpr (has_necks<Law>) {
     Row after[width];
@@ -182,8 +196,10 @@ inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int c
     if (general != 0) {
       for (int l = 0; l < width; ++l) {
         if (l >= count || !(general >> l & 1)) continue;
-        double of_i[8], of_j[8];
-        job.general(job, at + std::size_t(l), of_i, of_j);
+        double of_i[8], of_j[8], stiffness[8];
+        job.general(job, at + std::size_t(l), of_i, of_j, stiffness);
+        stiff[0][l] = Row::load(stiffness);
+        stiff[1][l] = Row::load(stiffness + 4);
         force_i[l] = Row::load(of_i);
         force_j[l] = Row::load(of_j);
         if constexpr (friction) {
@@ -193,7 +209,7 @@ inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int c
       }
     }
   }
-  constexpr std::size_t stride = friction ? 8 : 4;
+  const std::size_t stride = job.stride;
   for (int l = 0; l < width; ++l) {
     if (l >= count) break;
     double *const i = job.sums + stride * block.slot_i[l], *const j = job.sums + stride * block.slot_j[l];
@@ -202,6 +218,15 @@ inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int c
     (Row::load(j) + force_j[l]).store(j);
     if constexpr (friction) (Row::load(j + 4) + torque_j[l]).store(j + 4);
   }
+  if (job.next_step > 0)
+    for (int l = 0; l < width; ++l) {
+      if (l >= count) break;
+      for (const std::uint32_t slot : {block.slot_i[l], block.slot_j[l]}) {
+        double* const sum = job.sums + stride * slot + (friction ? 8 : 4);
+        (Row::load(sum) + stiff[0][l]).store(sum);
+        (Row::load(sum + 4) + stiff[1][l]).store(sum + 4);
+      }
+    }
 }
 
 template <class Law, bool friction>

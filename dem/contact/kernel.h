@@ -29,13 +29,16 @@ struct KernelJob {
   std::uint8_t material_a;
   const void* law;
   PairUniform uniform;
-  // Sums of the chunk, `stride` doubles a particle: force and 0, then torque and 0; its own particles, then others.
+  // Sums of the chunk, `stride` doubles a particle: force and 0; with friction torque and 0; with next_step > 0 what
+  // StiffnessSum holds and 0.  Its own particles first, then others.
   double* sums;
+  std::size_t stride;
   std::uint32_t first_particle;
+  double next_step;  ///< of StepStiffness [s]; 0: none asked for
 
-  /// The pair at a place of the near list by the general law; fills 8 doubles each (force and 0, torque and 0) of what
-  /// i and j receive.
-  void (*general)(const KernelJob&, std::size_t near, double* of_i, double* of_j);
+  /// The pair at a place of the near list by the general law; fills 8 doubles each: what i receives, what j receives
+  /// (force and 0, torque and 0), and the stiffness that both receive.
+  void (*general)(const KernelJob&, std::size_t near, double* of_i, double* of_j, double* stiffness);
 };
 
 /// Near pairs begin to end of a job.
@@ -44,8 +47,8 @@ using Kernel = void (*)(const KernelJob&, std::size_t begin, std::size_t end);
 /// The kernels of one instruction set.
 struct KernelTable {
   const char* name;
-  int width;                ///< contacts at once
-  Kernel kernel[2][2][2];   ///< [necks][Hertz][friction]
+  int width;               ///< contacts at once
+  Kernel kernel[2][2][2];  ///< [necks][Hertz][friction]
 };
 
 /// Those that this build holds and this processor can run, the plainest first.

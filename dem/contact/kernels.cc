@@ -36,7 +36,8 @@ const KernelTable& chosen_kernels() {
   const auto& tables = available_kernels();
   const char* const wanted = std::getenv("DENSIFY_INSTRUCTIONS");
   if (!wanted || !*wanted) return tables.back();
-  const auto found = std::find_if(tables.begin(), tables.end(), [&](const auto& t) { return t.name == std::string(wanted); });
+  const auto found =
+      std::find_if(tables.begin(), tables.end(), [&](const auto& t) { return t.name == std::string(wanted); });
   if (found != tables.end()) return *found;
   std::string names;
   for (const auto& t : tables) names += (names.empty() ? "" : ", ") + std::string(t.name);

@@ -100,9 +100,7 @@ struct Row {
     return r;
   }
   /// x y z and 0.
-  static Row load3(const double* p) {
-    return {Vector(_mm256_maskload_pd(p, _mm256_setr_epi64x(-1, -1, -1, 0)))};
-  }
+  static Row load3(const double* p) { return {Vector(_mm256_maskload_pd(p, _mm256_setr_epi64x(-1, -1, -1, 0)))}; }
   void store(double* p) const { std::memcpy(p, this, sizeof *this); }
   void store3(double* p) const {
     _mm_storeu_pd(p, _mm256_castpd256_pd128(v));

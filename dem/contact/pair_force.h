@@ -63,9 +63,8 @@ FrameOf<T> frame_of(const Law& law, const PairUniform& uniform, const PairOf<T>&
     const T product = pair.radius_i * pair.radius_j * (inverse * pair.inverse_masses);
     in.elastic_radius = uniform.equivalent_radius ? 2 * product : product;
     if constexpr (has_necks<Law>)
-      in.sintering_radius = law.settings.radius == SinteringRadius::smaller
-                                ? smaller(pair.radius_i, pair.radius_j)
-                                : 2 * product;
+      in.sintering_radius =
+          law.settings.radius == SinteringRadius::smaller ? smaller(pair.radius_i, pair.radius_j) : 2 * product;
     else
       in.sintering_radius = 0.0;
   } else {
@@ -101,8 +100,7 @@ struct FrictionOf {
 /// that is left; without any the spring `slip` is at rest.
 template <class Law, class T>
 FrictionOf<T> friction_of(const Law& law, const PairUniform& uniform, const PairOf<T>& pair, const FrameOf<T>& frame,
-                          const NormalForceOf<T>& normal, const TripleOf<T>& spin, const T& share,
-                          TripleOf<T>& slip) {
+                          const NormalForceOf<T>& normal, const TripleOf<T>& spin, const T& share, TripleOf<T>& slip) {
   const TripleOf<T>& n = frame.normal;
   const TangentialInputOf<T> in{n,
                                 pair.velocity - frame.approach * n - cross(spin, n),
@@ -119,6 +117,30 @@ FrictionOf<T> friction_of(const Law& law, const PairUniform& uniform, const Pair
   f.couple = select(left, f.couple, none);
   slip = select(left, slip, none);
   return f;
+}
+
+/// What a pair adds to the StiffnessSum of both its particles: xx yy zz xy, xz yz force.
+template <class T>
+struct StiffnessOf {
+  T xx, yy, zz, xy, xz, yz, force;
+};
+
+template <bool friction, class Law, class T>
+StiffnessOf<T> stiffness_of(const Law& law, const PairUniform& uniform, const FrameOf<T>& frame,
+                            const NormalForceOf<T>& normal, const T& along, double next_step) {
+  T across = 0.0;
+  if constexpr (friction)
+    across = tangential_step_stiffness(uniform.friction, spring_tangent(law, frame.in.overlap, frame.in.elastic_radius),
+                                       frame.in.reduced_mass, next_step);
+  const TripleOf<T>& n = frame.normal;
+  const TripleOf<T> m = (along - across) * n;
+  return {across + m.x * n.x,
+          across + m.y * n.y,
+          across + m.z * n.z,
+          m.x * n.y,
+          m.x * n.z,
+          m.y * n.z,
+          larger(larger(normal.total, -normal.total), normal.sintering)};
 }
 
 }  // namespace densify::dem

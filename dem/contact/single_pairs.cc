@@ -1,5 +1,7 @@
 #include "dem/contact/single_pairs.h"
 
+#include <algorithm>
+
 namespace densify::dem {
 
 namespace {
@@ -24,7 +26,7 @@ const auto& spring_of(const Law& law) {
 
 /// What one pair gives to i and j, rows as in KernelJob::sums.
 struct Given {
-  double i[8] = {}, j[8] = {};
+  double i[8] = {}, j[8] = {}, stiffness[8] = {};
 };
 
 /// Fills the parts of a record that no force needs.
@@ -84,8 +86,9 @@ bool pair(const KernelJob& job, std::size_t near, Given& given, ContactRecord* r
   FrameOf<double> frame = frame_of(law, job.uniform, pair, d2);
   if (job.growing) {
     const bool swapped = job.material[i] != job.material_a;
-    frame.in.rate -= thermal_growth(pair.radius_i, pair.radius_j, frame.in.overlap,
-                                    swapped ? job.growth_b : job.growth_a, swapped ? job.growth_a : job.growth_b, necked);
+    frame.in.rate -=
+        thermal_growth(pair.radius_i, pair.radius_j, frame.in.overlap, swapped ? job.growth_b : job.growth_a,
+                       swapped ? job.growth_a : job.growth_b, necked);
   }
   NormalForce normal;
   double share = 1;  // of the friction
@@ -98,7 +101,8 @@ bool pair(const KernelJob& job, std::size_t near, Given& given, ContactRecord* r
   Triple force = normal.total * frame.normal;
   if constexpr (friction) {
     const double lever_i = pair.radius_i + 0.5 * frame.in.overlap, lever_j = pair.radius_j + 0.5 * frame.in.overlap;
-    const Triple spin = lever_i * triple(job.spin + 3 * std::size_t(i)) + lever_j * triple(job.spin + 3 * std::size_t(j));
+    const Triple spin =
+        lever_i * triple(job.spin + 3 * std::size_t(i)) + lever_j * triple(job.spin + 3 * std::size_t(j));
     Triple slip = triple(sheared);
     const FrictionOf<double> f = friction_of(law, job.uniform, pair, frame, normal, spin, share, slip);
     sheared[0] = slip.x, sheared[1] = slip.y, sheared[2] = slip.z;
@@ -113,6 +117,16 @@ bool pair(const KernelJob& job, std::size_t near, Given& given, ContactRecord* r
   }
   put(given.i, force);
   put(given.j, -1.0 * force);
+  if (job.next_step > 0) {
+    double along;
+    if constexpr (has_necks<Law>)
+      along = law.step_stiffness(frame.in, *neck, job.next_step);
+    else
+      along = law.step_stiffness(frame.in, job.next_step);
+    const StiffnessOf<double> s = stiffness_of<friction>(law, job.uniform, frame, normal, along, job.next_step);
+    const double row[8] = {s.xx, s.yy, s.zz, s.xy, s.xz, s.yz, s.force, 0};
+    std::copy_n(row, 8, given.stiffness);
+  }
   if (record) {
     record->force = Vec3(force.x, force.y, force.z);
     keep(law, frame.in, normal, neck, *record);
@@ -121,22 +135,28 @@ bool pair(const KernelJob& job, std::size_t near, Given& given, ContactRecord* r
 }
 
 template <class Law, bool friction>
-void general(const KernelJob& job, std::size_t near, double* of_i, double* of_j) {
+void general(const KernelJob& job, std::size_t near, double* of_i, double* of_j, double* stiffness) {
   Given given;
   pair<Law, friction>(job, near, given, nullptr);
-  for (int k = 0; k < 8; ++k) of_i[k] = given.i[k], of_j[k] = given.j[k];
+  std::copy_n(given.i, 8, of_i);
+  std::copy_n(given.j, 8, of_j);
+  std::copy_n(given.stiffness, 8, stiffness);
 }
 
 template <class Law, bool friction>
 void record_pairs(const KernelJob& job, std::size_t begin, std::size_t end, ContactRecord* record) {
-  constexpr std::size_t stride = friction ? 8 : 4;
+  constexpr std::size_t forces = friction ? 8 : 4;
   for (std::size_t n = begin; n < end; ++n) {
     const std::uint32_t place = job.place[n];
     Given given;
     if (!pair<Law, friction>(job, n, given, record + place)) continue;
-    double *const i = job.sums + stride * (job.first[place] - job.first_particle), *const j = job.sums + stride * job.slot[n];
-    for (std::size_t k = 0; k < stride; ++k) i[k] += given.i[k];
-    for (std::size_t k = 0; k < stride; ++k) j[k] += given.j[k];
+    double* const i = job.sums + job.stride * (job.first[place] - job.first_particle);
+    double* const j = job.sums + job.stride * job.slot[n];
+    for (std::size_t k = 0; k < forces; ++k) i[k] += given.i[k];
+    for (std::size_t k = 0; k < forces; ++k) j[k] += given.j[k];
+    if (job.next_step > 0)
+      for (double* sum : {i, j})
+        for (std::size_t k = 0; k < 8; ++k) sum[forces + k] += given.stiffness[k];
   }
 }
 
@@ -149,7 +169,8 @@ SinglePairs of_law(bool friction) {
 }  // namespace
 
 SinglePairs single_pairs(bool necks, bool hertz, bool friction) {
-  if (necks) return hertz ? of_law<SinteringContact<HertzSpring>>(friction) : of_law<SinteringContact<LinearSpring>>(friction);
+  if (necks)
+    return hertz ? of_law<SinteringContact<HertzSpring>>(friction) : of_law<SinteringContact<LinearSpring>>(friction);
   return hertz ? of_law<KelvinVoigt<HertzSpring>>(friction) : of_law<KelvinVoigt<LinearSpring>>(friction);
 }
 

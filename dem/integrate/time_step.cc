@@ -38,12 +38,7 @@ namespace {
 
 /// Sums of the contacts over each particle [N/m, N s/m].
 struct Sums {
-  std::vector<double> stiffness, damping;
-
-  void add(std::uint32_t p, double k, double c) {
-    stiffness[p] += k;
-    damping[p] += c;
-  }
+  std::vector<StiffnessSum> stiffness, damping;
 };
 
 /// Adds the contacts of one bucket; returns the smallest limit of a pair by the thesis's rule, infinite with the other.
@@ -77,11 +72,13 @@ double add_bucket(const Law& law, const ContactList& list, const ContactList::Bu
       smallest = std::min(smallest, thesis_limit(l, in.reduced_mass));
       continue;
     }
-    const bool dashpot = std::isinf(l.stiffness);  // a viscous contact without spring
-    if (!dashpot) l = with_tangential_share(l, model, in.reduced_mass);
-    const double k_sum = dashpot ? 0.0 : l.stiffness, c_sum = dashpot ? l.viscosity : l.damper;
-    sums.add(i, k_sum, c_sum);
-    sums.add(j, k_sum, c_sum);
+    if (std::isinf(l.stiffness)) l = {0, l.viscosity, 0, 0, 0};  // a viscous contact without spring
+    const Linearisation across = tangential_share(l, model, in.reduced_mass);
+    const Vec3 n = (b.position - a.position + shifts[list.image(k)]) / std::sqrt(d2);
+    for (const std::uint32_t p : {i, j}) {
+      sums.stiffness[p].add(l.stiffness, across.stiffness, n);
+      sums.damping[p].add(l.damper, across.damper, n);
+    }
   }
   return smallest;
 }
@@ -92,7 +89,7 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
                         const ContactModel& model, Walls& walls, const PunchNode& punch, PassTime clock,
                         StepRule rule) {
   const std::size_t n = particles.size();
-  Sums sums{std::vector<double>(n, 0.0), std::vector<double>(n, 0.0)};
+  Sums sums{std::vector<StiffnessSum>(n), std::vector<StiffnessSum>(n)};
   const ImageShifts shifts(cell);
   double smallest_pair = infinity;
   for (const auto& bucket : list.buckets) {
@@ -113,20 +110,26 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
 
   StepLimit limit;
   limit.critical = infinity;
+  double stiffest = 0;  // light contact [N/m]
   for (std::size_t p = 0; p < n; ++p) {
     const Body& b = particles.body[p];
     // A particle about to touch must find the step small enough for its first contact.
     const PairProperties& like = table.row(particles.material[p], particles.material[p]);
     const double mass = 1 / b.inverse_mass;
-    const Linearisation light = with_tangential_share(light_contact(model, like, b.radius, mass), model, 0.5 * mass);
+    const Linearisation light = light_contact(model, like, b.radius, mass);
+    const Linearisation across = tangential_share(light, model, 0.5 * mass);
+    stiffest = std::max({stiffest, light.stiffness, across.stiffness});
     const double own =
-        node_limit(mass, std::max(light.stiffness, sums.stiffness[p]), std::max(light.damper, sums.damping[p]));
+        node_limit(mass, std::max({light.stiffness, across.stiffness, sums.stiffness[p].largest_eigenvalue()}),
+                   std::max({light.damper, across.damper, sums.damping[p].largest_eigenvalue()}));
     if (own < limit.critical) limit = {own, std::uint32_t(p), 0};
   }
   if (rule == StepRule::thesis) limit.critical = std::min(smallest_pair, limit.critical);
   if (punch.mass > 0) {
     limit.punch_stiffness = walls.stiffness()[punch.wall];
-    limit.critical = std::min(limit.critical, node_limit(punch.mass, limit.punch_stiffness,
+    // The punch of a few particles is lighter than one of them: its first contact, with a rigid plane, is twice as
+    // stiff as theirs.
+    limit.critical = std::min(limit.critical, node_limit(punch.mass, std::max(limit.punch_stiffness, 2 * stiffest),
                                                          walls.damping()[punch.wall] + 0.5 * punch.own_damping));
   }
   return limit;

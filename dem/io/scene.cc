@@ -25,13 +25,27 @@ void visit(Section root, Scene& scene, ScenePlaces& places) {
   read_process(root, scene, places);
   read_loads(root, scene);
   read_integration(root, scene, places);
+  read_guards(root, scene);
   read_output(root, scene);
+}
+
+/// A document in which every key of a scene is declared.
+SceneDocument all_keys() {
+  SceneDocument document = SceneDocument::for_help();
+  Scene scene;
+  ScenePlaces places;
+  visit(document.root(), scene, places);
+  return document;
 }
 
 Scene read(SceneDocument document) {
   Scene scene;
   ScenePlaces places;
-  visit(document.root(), scene, places);
+  try {
+    visit(document.root(), scene, places);
+  } catch (const MissingKey& missing) {
+    throw InputError(missing.what() + missing.misspelling(all_keys().declared_keys()));
+  }
   document.reject_unknown();
   check_scene(scene, places);
   scene.effective_text = document.effective_text();
@@ -39,6 +53,8 @@ Scene read(SceneDocument document) {
     scene.places.emplace_back("specimen.packing.green_density", places.packing->where("green_density"));
   if (places.import) scene.places.emplace_back("specimen.import.file", places.import->where("file"));
   if (places.integration) scene.places.emplace_back("integration.fixed_step", places.integration->where("fixed_step"));
+  if (places.integration)
+    scene.places.emplace_back("integration.mass_scaling", places.integration->where("mass_scaling"));
   return scene;
 }
 
@@ -70,11 +86,7 @@ Scene with_overrides(const Scene& scene, const std::vector<std::string>& overrid
 }
 
 std::string scene_help() {
-  SceneDocument document = SceneDocument::for_help();
-  Scene scene;
-  ScenePlaces places;
-  visit(document.root(), scene, places);
-  return document.help_text();
+  return all_keys().help_text();
 }
 
 std::uint8_t material_index(const Section& section, std::string_view key, const std::string& name, const Scene& scene) {
@@ -104,10 +116,10 @@ std::string_view require_one(const Section& section, std::initializer_list<std::
     found.append(found.empty() ? "" : " and ").append(key);
     given = key;
   }
-  if (!section.documenting() && found != given) {
-    section.fail("", "needs exactly one of " + all + ", found " + (found.empty() ? "none" : found));
-  }
-  return given;
+  if (section.documenting() || found == given) return given;
+  const std::string problem = "needs exactly one of " + all + ", found ";
+  if (found.empty()) section.fail_missing(keys, problem + "none");
+  section.fail("", problem + found);
 }
 
 }  // namespace densify::dem

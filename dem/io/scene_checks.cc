@@ -155,10 +155,39 @@ void check_container(const Scene& scene, const ScenePlaces& places) {
   }
 }
 
+void check_integration(const Scene& scene, const ScenePlaces& places) {
+  const IntegrationSettings& s = scene.integration;
+  const bool controlled = !std::isnan(s.inertia_measure);
+  if (s.inertia == Inertia::uniform) {
+    if (controlled)
+      places.integration->fail("inertia_measure", "belongs to inertia = \"equalised\"; set that, or remove this key");
+    if (!std::isnan(s.smallest_step))
+      places.integration->fail("smallest_step",
+                               "belongs to inertia_measure; give that with inertia = \"equalised\", "
+                               "or remove this key");
+    return;
+  }
+  if (controlled == !std::isnan(s.fixed_step))
+    places.integration->fail(controlled ? "fixed_step" : "inertia",
+                             controlled ? "and inertia_measure both choose the step; remove one of them"
+                                        : "equalised masses follow from a step; give inertia_measure (3e-3 is a good "
+                                          "value) or fixed_step");
+  if (s.mass_scaling != IntegrationSettings{}.mass_scaling)
+    places.integration->fail("mass_scaling",
+                             "has no meaning with inertia = \"equalised\", whose masses follow from "
+                             "the step; remove it");
+  if (s.smallest_step > s.largest_step) places.integration->fail("smallest_step", "is above largest_step; lower it");
+}
+
 }  // namespace
 
 void check_scene(const Scene& scene, const ScenePlaces& places) {
   check_container(scene, places);
+  check_integration(scene, places);
+  if (scene.integration.method == IntegrationMethod::inertia_free && scene.contact.friction)
+    places.integration->fail("method",
+                             "\"inertia_free\" has no rotations, which [contact.friction] needs; remove it, or "
+                             "use method = \"explicit\"");
   check_materials(scene, places);
   const auto n = std::uint8_t(scene.materials.size());
   for (std::uint8_t a = 0; a < n; ++a) {

@@ -230,7 +230,10 @@ void write_state(Hdf5Writer& file, const State& state) {
   file.list("/state/active_since", state.active_since, "s");
   file.list<double>("/state/clock",
                     {state.temperature, state.time, state.last_step, state.stable_step, state.critical_step}, "");
+  file.list("/state/strain_rate", flat(state.control.strain_rate), "1/s");
+  file.list<double>("/state/inertial_number", {state.control.inertial_number}, "1");
   file.attribute("/state", "steps", state.steps);
+  file.attribute("/state", "inertia_free", std::uint64_t(state.inertia_free));
 }
 
 State read_state(const Hdf5Reader& file, const Simulation& simulation) {
@@ -266,7 +269,10 @@ State read_state(const Hdf5Reader& file, const Simulation& simulation) {
   s.last_step = clock[2];
   s.stable_step = clock[3];
   s.critical_step = clock[4];
+  s.control.strain_rate = read_matrix(file, "/state/strain_rate");
+  s.control.inertial_number = read_list<double>(file, "/state/inertial_number", 1)[0];
   s.steps = file.attribute<std::uint64_t>("/state", "steps");
+  s.inertia_free = file.attribute<std::uint64_t>("/state", "inertia_free") != 0;
   require(std::isfinite(s.time) && std::isfinite(s.temperature), "/state/clock");
   return s;
 }

@@ -39,4 +39,18 @@ TripleOf<T> coulomb(const FrictionModel& model, double coefficient, const Tangen
   return force;
 }
 
+/// What a solid sphere answers to a tangential force at its surface, 1/m + r^2/J, over its 1/m.
+inline constexpr double rotation_factor = 3.5;
+
+/// Share of the sticking tangential spring in StepStiffness, 3.5 (k_t + 2 c_t/dt) [N/m].
+template <class T>
+T tangential_step_stiffness(const FrictionModel& model, const T& normal_stiffness, const T& reduced_mass,
+                            double next_step) {
+  const T k = model.tangential_stiffness_ratio * normal_stiffness;
+  if (!(model.tangential_damping_ratio > 0)) return rotation_factor * k;
+  const T c = 2 * model.tangential_damping_ratio * std::sqrt(model.tangential_stiffness_ratio) *
+              root(reduced_mass * normal_stiffness);
+  return rotation_factor * (k + 2 * c / next_step);
+}
+
 }  // namespace densify::dem

@@ -25,25 +25,25 @@ struct TangentialInput {
 inline Vec3 coulomb(const FrictionModel& model, double coefficient, const TangentialInput& in, Vec3& slip) {
   const auto triple = [](const Vec3& v) { return TripleOf<double>{v[0], v[1], v[2]}; };
   TripleOf<double> turned = triple(slip);
-  const TripleOf<double> force = coulomb(model, coefficient,
-                                         TangentialInputOf<double>{triple(in.normal), triple(in.velocity),
-                                                                   in.normal_force, in.normal_stiffness,
-                                                                   in.reduced_mass, in.step},
-                                         turned);
+  const TripleOf<double> force =
+      coulomb(model, coefficient,
+              TangentialInputOf<double>{triple(in.normal), triple(in.velocity), in.normal_force, in.normal_stiffness,
+                                        in.reduced_mass, in.step},
+              turned);
   slip = Vec3(turned.x, turned.y, turned.z);
   return {force.x, force.y, force.z};
 }
 
-/// Stiffness and damper of a contact as its particles' step limits have to count them: the larger of the normal ones
-/// and 3.5 times those of the sticking tangential spring, because a solid sphere answers it with 1/m + r^2/J = 3.5/m.
-inline Linearisation with_tangential_share(Linearisation l, const ContactModel& model, double reduced_mass) {
-  if (!model.friction) return l;
-  constexpr double rotation_factor = 3.5;
+/// Stiffness and damper of the sticking tangential spring as its particles' step limits have to count them, 3.5 k_t and
+/// 3.5 c_t across the normal: with displacement x and turn y = r phi sqrt(J/(m r^2)), |P (x + sqrt(2.5) n x y)|^2 <=
+/// 3.5 (|P x|^2 + |P y|^2), P the projection on the contact plane.
+inline Linearisation tangential_share(const Linearisation& l, const ContactModel& model, double reduced_mass) {
+  Linearisation t;
+  if (!model.friction) return t;
   const double k = model.friction->tangential_stiffness_ratio * l.stiffness;
-  const double c = 2 * model.friction->tangential_damping_ratio * std::sqrt(reduced_mass * k);
-  l.stiffness = std::max(l.stiffness, rotation_factor * k);
-  l.damper = std::max(l.damper, rotation_factor * c);
-  return l;
+  t.stiffness = rotation_factor * k;
+  t.damper = rotation_factor * 2 * model.friction->tangential_damping_ratio * std::sqrt(reduced_mass * k);
+  return t;
 }
 
 }  // namespace densify::dem

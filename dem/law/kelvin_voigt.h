@@ -1,6 +1,7 @@
 #pragma once
 // The contact of loose particles: spring and damper in parallel, no tension in the spring (4.14-4.26).
 
+#include <algorithm>
 #include <limits>
 
 #include "dem/law/law.h"
@@ -24,6 +25,14 @@ struct KelvinVoigt {
   template <class T>
   NormalForceOf<T> update(const NormalInputOf<T>& in) const {
     return {spring.force(in.overlap, in.elastic_radius) + damper(in) * in.rate, 0};
+  }
+
+  /// k + 2 c/dt of a step of length dt, at the overlap that the present rate leads to: see StepStiffness [N/m].
+  template <class T>
+  T step_stiffness(const NormalInputOf<T>& in, double next_step) const {
+    const T k = spring.tangent(in.overlap + smaller(T(0.0), in.rate) * next_step, in.elastic_radius);
+    if (damping_ratio == 0) return k;
+    return k + 4 * damping_ratio * root(in.reduced_mass * k) / next_step;
   }
 
   Linearisation linearise(const NormalInput& in) const {

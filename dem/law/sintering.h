@@ -144,8 +144,7 @@ struct SinteringContact {
     Flow<T> flow{0.0, 1.0};
     if (any(phase.sintering)) {
       const T grown = grown_neck(in, neck.radius);
-      turning = phase.sintering &
-                ((grown >= largest_neck(in)) | ((in.overlap >= 0) & (grown <= smallest_neck(in))));
+      turning = phase.sintering & ((grown >= largest_neck(in)) | ((in.overlap >= 0) & (grown <= smallest_neck(in))));
       after.radius = select(phase.sintering, grown, neck.radius);
       middle = 0.5 * (neck.radius + after.radius);  // of the step (4.57)
       f_sint = select(phase.sintering, sintering_force(middle, in.sintering_radius), T(0.0));
@@ -168,6 +167,27 @@ struct SinteringContact {
     return f;
   }
 
+  /// The constant stiffness that is as near to instability in a step of length dt as spring, damper and dashpot are:
+  /// (k + 2 c/dt)/(1 + (theta - 1/2) k dt/eta), 2 eta/dt without a spring; neck and spring are those that the present
+  /// rate leads to (see StepStiffness) [N/m].
+  double step_stiffness(const NormalInput& in, const NeckHistory& h, double next_step) const {
+    // A neck that is about to reach equilibrium or that freezes stiffens within one step.
+    const bool soft =
+        h.phase == NeckPhase::sintering || h.phase == NeckPhase::activating || h.phase == NeckPhase::reactivating;
+    const auto eta = [&](double a) {
+      return h.phase == NeckPhase::sintering ? viscosity(a) : series_viscosity(h.phase, a, activity(h, in.time));
+    };
+    return step_stiffness(in, NeckOf<double>{h.radius, h.elastic}, h.phase == NeckPhase::loose, soft, eta, next_step);
+  }
+
+  /// The same for contacts in settled phases.
+  template <class T, class Condition>
+  T step_stiffness(const NormalInputOf<T>& in, const NeckOf<T>& neck, const PhasesOf<Condition>& phase,
+                   double next_step) const {
+    return step_stiffness(
+        in, neck, phase.loose, phase.sintering, [&](const T& a) { return viscosity(a); }, next_step);
+  }
+
   Linearisation linearise(const NormalInput& in, const NeckHistory& h) const {
     if (h.phase == NeckPhase::loose) return loose.linearise(in);
     const double share = activity(h, in.time);
@@ -187,6 +207,28 @@ struct SinteringContact {
   }
 
  private:
+  /// `soft` tells which flow, `eta` gives the viscosity in series for a neck radius.
+  template <class T, class Condition, class Viscosity>
+  T step_stiffness(const NormalInputOf<T>& in, const NeckOf<T>& neck, const Condition& is_loose, const Condition& soft,
+                   const Viscosity& eta, double next_step) const {
+    const T approach = larger(T(0.0), -in.rate) * next_step;
+    const T k = loose.spring.tangent(neck.elastic - approach, in.elastic_radius);
+    T stiffness = k + 2 * damper(in, k) / next_step;
+    if (any(soft)) {
+      NormalInputOf<T> later = in;
+      later.overlap = in.overlap - approach;
+      const T a = settings.neck == NeckGrowth::overlap
+                      ? larger(neck_of_overlap(later), smallest_neck(in))
+                      : root(neck.radius * neck.radius + 2 * in.sintering_radius * approach);
+      if (settings.model == SinteringModel::viscous)
+        stiffness = select(soft, larger(stiffness, 2 * viscosity(a) / next_step), stiffness);
+      else if (settings.update != MaxwellUpdate::trapezoidal)
+        stiffness = select(
+            soft, select(a >= largest_neck(in), stiffness, stiffness / (1 + 0.5 * k * next_step / eta(a))), stiffness);
+    }
+    return any(is_loose) ? select(is_loose, loose.step_stiffness(in, next_step), stiffness) : stiffness;
+  }
+
   /// 1/eta as a fraction, mobility/per: one division less.
   template <class T>
   struct Flow {
@@ -199,9 +241,8 @@ struct SinteringContact {
   NormalForceOf<T> relax(const NormalInputOf<T>& in, const Flow<T>& flow, const T& f_sint, T& elastic) const {
     const T k = loose.spring.tangent(elastic, in.elastic_radius);
     const double theta = settings.update == MaxwellUpdate::trapezoidal ? 0.5 : 1.0;
-    const T elastic_rate =
-        (flow.per * in.rate - flow.mobility * loose.spring.force(elastic, in.elastic_radius)) /
-        (flow.per + theta * in.step * flow.mobility * k);
+    const T elastic_rate = (flow.per * in.rate - flow.mobility * loose.spring.force(elastic, in.elastic_radius)) /
+                           (flow.per + theta * in.step * flow.mobility * k);
     elastic = elastic + in.step * elastic_rate;
     T f = loose.spring.force(elastic, in.elastic_radius);
     // The damper sees the elastic part of the rate only: it stills vibration and adds no viscosity to the flow.
@@ -213,6 +254,7 @@ struct SinteringContact {
   NormalForce update_turning(const NormalInput& in, NeckHistory& h) const {
     if (h.phase == NeckPhase::loose) {
       if (!active) return loose.update(in);
+      if (!activation_step && in.step > 0) return born(in, h);
       begin(in, h);
       const double share = activity(h, in.time);
       const double f_sint = share > 0 ? share * sintering_force(h.radius, in.sintering_radius) : 0;
@@ -267,6 +309,7 @@ struct SinteringContact {
       return settings.at_equilibrium == AtEquilibrium::viscous && phase == NeckPhase::bonded
                  ? before
                  : std::numeric_limits<double>::infinity();
+    if (theory >= settings.viscosity_before) return theory;  // where nothing diffuses it is infinite
     return (1 - share) * before + share * theory;
   }
 
@@ -285,6 +328,15 @@ struct SinteringContact {
                           ? neck_of_overlap(in)
                           : std::sqrt(0.5 * in.sintering_radius * std::max(0.0, -in.overlap));  // (4.30)
     h.radius = std::clamp(a0, smallest_neck(in), largest_neck(in));
+  }
+
+  /// A contact that met within the step starts where the surfaces touched, with a small neck and no force, and lives
+  /// through the rest of the step: what it is at the end does not depend on where steps begin.
+  NormalForce born(const NormalInput& in, NeckHistory& h) const {
+    NormalInput rest = in;
+    if (in.rate < 0) rest.step = std::min(in.step, in.overlap / in.rate);
+    h = {smallest_neck(in), 0, in.time - rest.step, NeckPhase::sintering};
+    return update(rest, h);
   }
 
   /// a' = -r v / a (4.31) as a^2 - 2 r v dt (4.58), or the overlap's own neck; between a small neck and a_max.

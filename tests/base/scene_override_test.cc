@@ -71,6 +71,14 @@ TEST(SceneOverride, ReplacesAndCreates) {
   EXPECT_EQ(read({"powder.seed=42", "powder.seed=43"}).seed, 43);
 }
 
+// An empty value is as if the key had never been written.
+TEST(SceneOverride, EmptyValueRemoves) {
+  EXPECT_EQ(read({"title="}).title, "");
+  EXPECT_EQ(read({"integration.step=0.3", "integration="}).step, 0.5);
+  EXPECT_EQ(read({"nothing.at.all="}).seed, 3);
+  EXPECT_NE(mistake("powder.seed=").find("powder.seed: missing, and required"), std::string::npos);
+}
+
 TEST(SceneOverride, WrongValueNamesTheOverride) {
   EXPECT_EQ(mistake("process.stage.1.pressure=5"),
             "--set process.stage.1.pressure=5: a bare number where a pressure is due; write \"30 MPa\"");

@@ -29,7 +29,7 @@ struct World {
     ForcePass pass(model, 1);
     pass.list_changed(list, particles.size());
     std::vector<ContactRecord> record;
-    pass.compute(particles, list, cell, table, growth, {0, step}, &record);
+    pass.compute(particles, list, cell, table, growth, {0, step}, &record, nullptr);
     return record;
   }
 };

@@ -1,13 +1,12 @@
 // The contact kernels of every instruction set, the pass that keeps a record, and every number of threads give the same
 // results bit for bit: all do the same IEEE operations in the same order.
 
-#include "dem/contact/kernel.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
 #include "base/check.h"
+#include "dem/contact/kernel.h"
 #include "tests/dem/small_packings.h"
 
 namespace densify::dem {

@@ -223,6 +223,34 @@ TEST(Bond, ForceFollowsStiffnessThroughAThermalCycle) {
   EXPECT_EQ(rows.back().neck.elastic, -1e-8);
 }
 
+// Hertz bond driven round a cycle: compressed hot, cooled at that length, released cold, heated.  With F = K(T) f(u_e)
+// the work taken in is that of the two springs, 2/5 (K_hot - K_cold) sqrt(R) (u_1^(5/2) - u_0^(5/2)), and nothing is
+// left in the bond; a force as history would end as another force than it began.
+// Trapezoidal sum over 1000 steps a side: 1e-7.
+TEST(Bond, HertzWorkOverAThermalCycle) {
+  const double hot = 1e11, cold = 1.6e11, radius = 0.5 * r, u0 = 1e-8, u1 = 5e-8;
+  SinteringSettings settings;
+  settings.damping_ratio = 0;
+  const SinteringContact<HertzSpring> bond{{{hot, 3e-4}, 0}, settings, 1, gamma, cap, sine, false, false};
+  auto pressed = [&](double t) { return std::clamp(t < 1.5 ? t : 3 - t, 0.0, 1.0); };     // up in 0-1, down in 2-3
+  auto cooled = [&](double t) { return std::clamp(t < 2.5 ? t - 1 : 4 - t, 0.0, 1.0); };  // down in 1-2, up in 3-4
+  const auto rows = drive<SinteringContact<HertzSpring>>(
+      bond, pair, {r * sine, -u0, 0, NeckPhase::dormant}, 0, 4, 4000,
+      [&](double t) { return -1e-7 - (u1 - u0) * pressed(t); },
+      [&](SinteringContact<HertzSpring>& l, double t) {
+        l.loose.spring.four_thirds_modulus = hot + (cold - hot) * cooled(t);
+      });
+  double work = 0;
+  for (std::size_t n = 1; n < rows.size(); ++n)
+    work += 0.5 * (rows[n].force.total + rows[n - 1].force.total) * (rows[n].overlap - rows[n - 1].overlap);
+  const double due = 0.4 * (hot - cold) * std::sqrt(radius) * (std::pow(u1, 2.5) - std::pow(u0, 2.5));
+  EXPECT_NEAR(work / due, 1, 1e-6);
+  EXPECT_NEAR(rows[1000].force.total / (-hot * std::sqrt(radius) * std::pow(u1, 1.5)), 1, 1e-9);
+  EXPECT_NEAR(rows[2000].force.total / (-cold * std::sqrt(radius) * std::pow(u1, 1.5)), 1, 1e-9);
+  EXPECT_NEAR(rows.back().force.total / rows.front().force.total, 1, 1e-9);
+  EXPECT_NEAR(rows.back().neck.elastic / -u0, 1, 1e-9);
+}
+
 // Friction fades with activation and does not come back while there is a neck.
 TEST(Neck, FrictionFades) {
   const Law law = law_with(1e3, 0.5 * r);

@@ -27,7 +27,7 @@ struct World {
   void compute(Walls& walls, std::vector<WallRecord>* record) {
     particles.force[0].setZero();
     walls.rebuild(particles, 0.1 * r);
-    walls.compute(particles, table, model, {0.0}, {0, 0}, record);
+    walls.compute(particles, table, model, {0.0}, {0, 0}, record, nullptr);
   }
 };
 
@@ -112,7 +112,7 @@ TEST(Walls, FrictionOfASpinningSphere) {
   w.particles.angular_velocity[0] = Vec3(0, 1e3, 0);  // contact point moves to -x
   Walls walls({floor_plane()}, {});
   walls.rebuild(w.particles, 0.1 * r);
-  walls.compute(w.particles, w.table, m, {0.0}, {0, 1e-3}, nullptr);
+  walls.compute(w.particles, w.table, m, {0.0}, {0, 1e-3}, nullptr, nullptr);
   const double f = 0.2 * 1e5 * u;  // slides: 2/7 k x 5 um is far above
   EXPECT_NEAR(w.particles.force[0][0], f, 1e-12 * f);
   EXPECT_NEAR(w.particles.torque[0][1], -f * (r - u), 1e-12 * f * r);

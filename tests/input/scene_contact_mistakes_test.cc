@@ -80,6 +80,20 @@ TEST(SceneMistakes, FrictionWithoutOrWithNegativeCoefficient) {
             "scene.toml:23: contact.friction.coefficient: must be >= 0, found -0.2");
 }
 
+// Missing comes first and unknown later, so the message of the one names the other; a known neighbour is no
+// misspelling.
+TEST(SceneMistakes, MisspeltRequiredKey) {
+  EXPECT_EQ(mistake("coefficient = 0.2", "coeficient = 0.2"),
+            "scene.toml:22: contact.friction.coefficient: missing, and required (mu between particles (4.27)); write "
+            "coefficient = 0.3; \"coeficient\" in line 23 is no key: did you mean \"coefficient\"?");
+  EXPECT_EQ(
+      mistake("duration = \"33 min\"", "durration = \"33 min\""),
+      "scene.toml:28: process.stage.1: stage \"loading\" needs exactly one of duration, end and rate, found none; "
+      "\"durration\" in line 30 is no key: did you mean \"duration\"?");
+  EXPECT_EQ(mistake("maximum = \"18.61 um\"", "").find("is no key"), std::string::npos);
+  EXPECT_EQ(mistake("maximum = \"18.61 um\"", "").find("scene.toml:3: powder.1.maximum: missing"), 0u);
+}
+
 TEST(SceneMistakes, UnknownModel) {
   EXPECT_EQ(mistake("\"viscoelastic\"", "\"viscelastic\""),
             "scene.toml:25: contact.sintering.model: \"viscelastic\" is not among \"viscoelastic\", \"viscous\"; did "

@@ -63,6 +63,43 @@ TEST(SceneMistakes, NegativeMassScaling) {
             "scene.toml:37: integration.mass_scaling: must be > 0, found -1e+17");
 }
 
+TEST(SceneMistakes, EqualisedInertiaWithoutAStep) {
+  EXPECT_EQ(mistake("mass_scaling = 1e17", "inertia = \"equalised\""),
+            "scene.toml:37: integration.inertia: equalised masses follow from a step; give inertia_measure (3e-3 is a "
+            "good value) or fixed_step");
+}
+
+TEST(SceneMistakes, EqualisedInertiaWithTwoSteps) {
+  EXPECT_EQ(mistake("mass_scaling = 1e17", "inertia = \"equalised\"\nfixed_step = \"1 s\"\ninertia_measure = 3e-3"),
+            "scene.toml:38: integration.fixed_step: and inertia_measure both choose the step; remove one of them");
+}
+
+TEST(SceneMistakes, EqualisedInertiaWithMassScaling) {
+  EXPECT_EQ(mistake_added("inertia = \"equalised\"\nfixed_step = \"1 s\"\n"),
+            "scene.toml:37: integration.mass_scaling: has no meaning with inertia = \"equalised\", whose masses follow "
+            "from the step; remove it");
+}
+
+TEST(SceneMistakes, MeasureOfUniformInertia) {
+  EXPECT_EQ(mistake_added("inertia_measure = 3e-3\n"),
+            "scene.toml:38: integration.inertia_measure: belongs to inertia = \"equalised\"; set that, or remove this "
+            "key");
+  EXPECT_EQ(mistake_added("smallest_step = \"1 ms\"\n"),
+            "scene.toml:38: integration.smallest_step: belongs to inertia_measure; give that with inertia = "
+            "\"equalised\", or remove this key");
+}
+
+TEST(SceneMistakes, MeasureOfInertiaThatIsNoShare) {
+  EXPECT_EQ(mistake("mass_scaling = 1e17", "inertia = \"equalised\"\ninertia_measure = 3"),
+            "scene.toml:38: integration.inertia_measure: must be > 0 and <= 1, found 3");
+}
+
+TEST(SceneMistakes, SmallestStepAboveTheLargest) {
+  EXPECT_EQ(mistake("mass_scaling = 1e17",
+                    "inertia = \"equalised\"\ninertia_measure = 3e-3\nlargest_step = \"1 s\"\nsmallest_step = \"2 s\""),
+            "scene.toml:40: integration.smallest_step: is above largest_step; lower it");
+}
+
 TEST(SceneMistakes, LoadOnANegativeParticle) {
   EXPECT_EQ(mistake_added("[[load]]\nparticle = -1\nforce = [\"1 N\", \"0 N\", \"0 N\"]\n"),
             "scene.toml:39: load.1.particle: must be >= 0 and <= 4294967295, found -1");

@@ -1,6 +1,6 @@
 #!/bin/sh
-# What must not change a run: output, threads, the place of the folder, --quiet; what the program says while it runs and
-# what `densify check` forecasts.  usage: same_result.sh DENSIFY FOLDER_OF_SCENES EXAMPLES WORK_FOLDER
+# What must not change a run: output, threads, the place of the folder, --quiet; what the program says while it
+# runs.  usage: same_result.sh DENSIFY FOLDER_OF_SCENES EXAMPLES WORK_FOLDER
 set -eu
 densify=$1 scenes=$2 examples=$3 work=$4
 . "$scenes/support.sh"
@@ -50,22 +50,12 @@ run_code run lattice.toml --out loud
 [ "$code" -eq 0 ] || fail "loud: $(cat "$err")"
 grep -q '% ' "$err" || fail "no progress: $(cat "$err")"
 ! grep -q "$(printf '\r')" "$err" || fail "a line that rewrites itself, in a file"
-for text in 'relative density 0' 'where the time went' 'neighbour list builds' 'warnings: ' 'results in loud'; do
+for text in 'relative density 0' 'where the time went' '^neighbour lists ' '^forces ' '^motion and step limits ' \
+  'neighbour list builds' 'warnings: ' 'results in loud'; do
   grep -q "$text" "$out" || fail "no \"$text\" in the summary"
 done
 
-# Forecasts within a factor of three of what the runs took.
-for scene in lattice small_press; do
-  [ -d $scene ] || run_to $scene $scene.toml
-  inventory >"$work.log/before"
-  run_code check $scene.toml
-  inventory >"$work.log/after"
-  cmp -s "$work.log/before" "$work.log/after" || fail "check $scene.toml writes files"
-  [ "$code" -eq 0 ] && grep -q '^the scene is valid$' "$out" || fail "check $scene: $(cat "$err")"
-  forecast=$(sed -n 's/^steps *about \([0-9.e+]*\) of.*/\1/p' "$out")
-  awk -v f="$forecast" -v n="$(steps $scene)" 'BEGIN { exit !(f > n / 3 && f < 3 * n) }' ||
-    fail "$scene: $forecast steps forecast, $(steps $scene) taken"
-done
+# Every shipped scene is valid.
 for scene in "$examples"/*/scene*.toml; do
   run_code check "$scene"
   [ "$code" -eq 0 ] && grep -q '^the scene is valid$' "$out" || fail "check $scene: $(cat "$err")"

@@ -1,0 +1,46 @@
+#pragma once
+// How much inertia disturbs a quasi-static process, and the step that keeps the disturbance at a wanted size.
+
+#include <algorithm>
+#include <limits>
+
+#include "dem/contact/step_stiffness.h"
+#include "dem/state/cell.h"
+
+namespace densify::dem {
+
+/// Settings of the step control of equalised inertia.
+struct StepControl {
+  double measure = unset_measure;  ///< inertial number to keep; NaN: the step is fixed
+  double smallest_step = 0;        ///< [s]
+  double largest_step = 0;         ///< [s]
+  double pressure_floor = 0;       ///< least pressure that inertia is measured against [Pa]
+
+  static constexpr double unset_measure = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// What the control remembers.
+struct ControlState {
+  Mat3 strain_rate = Mat3::Zero();  ///< running mean over some twenty steps [1/s]
+  double inertial_number = 0;
+};
+
+/// Steps between two evaluations of the inertial number.
+inline constexpr std::uint64_t control_interval = 5;
+
+/// The symmetric velocity gradient that fits the particles' velocities best, with the flow of a deforming cell [1/s].
+Mat3 fitted_strain_rate(const Particles&, const Cell&);
+
+/// Pressure that the contacts carry, sum over the particles of force times radius over three times the volume of the
+/// spheres [Pa].
+double contact_pressure(const Particles&, const StepStiffness&);
+
+/// Updates the running mean of the strain rate and the inertial number I = |D| d sqrt(rho'/p) with the mean diameter d,
+/// the density rho' of the masses as they move and a pressure p [Pa] (da Cruz et al., Phys. Rev. E 72 (2005) 021309).
+void measure_inertia(ControlState&, const Particles&, const Cell&, double pressure);
+
+/// The next step [s]: I goes with the step, so that the wanted number is a proportion away; the change over one
+/// control_interval is limited so that steps follow each other smoothly.
+double controlled_step(const StepControl&, const ControlState&, double step);
+
+}  // namespace densify::dem
