@@ -133,6 +133,7 @@ class Simulation {
   /// Whoever changes the state breaks its balance of energy, so that the guards begin anew.
   State& mutable_state() {
     guards_.forget();
+    may_have_travelled_ = std::numeric_limits<double>::infinity();
     return state_;
   }
   /// Throws RunError when the state is not sound, between two looks of the guards: before it is written anywhere.
@@ -166,6 +167,8 @@ class Simulation {
   double leapfrog_step();
   void rebuild_lists();
   void prune_near(double list_age);
+  void set_list_slack(double list_age);
+  void note_travel(double fastest, double step);
   GuardView guard_view();
 
   Setup setup_;
@@ -179,7 +182,8 @@ class Simulation {
   bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
   StepStiffness stiffness_;      // equalised inertia only: of the last pass
   StepControl control_;
-  double list_slack_ = 0;  // what may be travelled since the last pruning before the list can be too old [m]
+  // How far surfaces may have approached since the last pruning, from above, and what the list still allows [m].
+  double may_have_travelled_ = 0, list_slack_ = 0;
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
 };
