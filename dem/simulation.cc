@@ -92,6 +92,9 @@ Simulation::Simulation(Setup setup)
       pass_(setup_.contact, setup_.integration.threads) {
   if (setup_.particles.size() == 0)
     throw InputError("powder: no particles (the powder is empty); give a number of at least 1");
+  if (setup_.integration.method == IntegrationMethod::inertia_free && setup_.contact.friction)
+    throw InputError(
+        "integration.method: \"inertia_free\" has no rotations, which [contact.friction] needs; remove one");
   Particles& particles = setup_.particles;
   const auto order = spatial_order(particles);
   permute(particles.body, order);
@@ -161,7 +164,8 @@ double Simulation::punch_area() const {
 }
 
 double Simulation::real_mass(std::size_t p) const {
-  return 1 / (state_.particles.body[p].inverse_mass * setup_.integration.mass_scaling);
+  const double scaling = state_.inertia_free ? 1.0 : setup_.integration.mass_scaling;
+  return 1 / (state_.particles.body[p].inverse_mass * scaling);
 }
 
 double Simulation::solid_volume() const {
@@ -330,9 +334,22 @@ void Simulation::evaluate(Recording* record) {
   evaluated_ = true;
 }
 
-void Simulation::move() {
-  if (!evaluated_) throw std::logic_error("Simulation::move needs evaluate before it");
-  evaluated_ = refreshed_ = false;
+bool Simulation::moves_without_inertia() const {
+  if (setup_.integration.method != IntegrationMethod::inertia_free) return false;
+  return setup_.integration.inertia_free.from == InertiaFreeFrom::start || !state_.contacts.neck.empty();
+}
+
+/// Real masses, so that dampers made from them carry nothing, and no vibration left.
+void Simulation::drop_inertia() {
+  for (Body& b : state_.particles.body) {
+    b.inverse_mass *= setup_.integration.mass_scaling;
+    b.velocity.setZero();
+  }
+  state_.punch.velocity = 0;
+  state_.inertia_free = true;
+}
+
+double Simulation::leapfrog_step() {
   const double step = choose_step();
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   if (state_.punch.mass > 0) {
@@ -343,6 +360,21 @@ void Simulation::move() {
   for (auto& w : state_.walls.wall) {
     w.point += step * w.velocity;
     w.radius += step * w.radius_rate;
+  }
+  return step;
+}
+
+void Simulation::move() {
+  if (!evaluated_) throw std::logic_error("Simulation::move needs evaluate before it");
+  evaluated_ = refreshed_ = false;
+  double step;
+  if (moves_without_inertia()) {
+    if (!state_.inertia_free) drop_inertia();
+    const double longest = setup_.integration.largest_step;
+    step = inertia_free_.move(state_, setup_, table_, state_.punch.mass > 0 ? punch_wall_ : std::nullopt,
+                              std::isnan(longest) ? setup_.schedule.end() : longest);
+  } else {
+    step = leapfrog_step();
   }
   const double breakpoint = setup_.schedule.next_breakpoint(state_.time);
   state_.time = state_.time + step >= breakpoint ? breakpoint : state_.time + step;
@@ -390,7 +422,7 @@ std::size_t Simulation::bytes() const {
   const ContactList& c = state_.contacts;
   return of(p.body) + of(p.reference_radius) + of(p.material) + of(p.id) + of(p.force) + of(p.angular_velocity) +
          of(p.torque) + of(c.first) + of(c.second) + of(c.tangential) + of(c.neck) + of(c.reference_position) +
-         of(state_.walls.contacts()) + pass_.bytes();
+         of(state_.walls.contacts()) + pass_.bytes() + inertia_free_.bytes();
 }
 
 }  // namespace densify::dem

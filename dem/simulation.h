@@ -6,6 +6,7 @@
 
 #include "base/schedule.h"
 #include "dem/boundary/punch.h"
+#include "dem/integrate/inertia_free.h"
 #include "dem/integrate/time_step.h"
 
 namespace densify::dem {
@@ -30,6 +31,8 @@ struct Load {
 };
 
 struct IntegrationSettings {
+  IntegrationMethod method = IntegrationMethod::leapfrog;
+  InertiaFreeSettings inertia_free;
   StepRule rule = StepRule::particle_sum;
   double step_safety = 0.8;
   double fixed_step = unset;    ///< replaces the rule [s]
@@ -70,6 +73,7 @@ struct State {
   double stable_step = 0;         ///< safety x critical of the last evaluation [s]
   double critical_step = 0;       ///< [s]
   std::uint64_t steps = 0;
+  bool inertia_free = false;         ///< moves without inertia by now, masses are real
   std::vector<double> active_since;  ///< of each pair of materials [s]
 };
 
@@ -125,7 +129,8 @@ class Simulation {
   std::optional<std::size_t> wall(std::string_view name) const;
   /// Present area under the punch, the hot one in an expanding die; 0 without lateral walls [m^2].
   double punch_area() const;
-  std::size_t bytes() const;         ///< memory of state and scratch
+  std::size_t bytes() const;  ///< memory of state and scratch
+  const InertiaFreeCount& inertia_free_count() const { return inertia_free_.count(); }
   std::size_t contacts_now() const;  ///< touching or necked pairs
 
  private:
@@ -133,6 +138,9 @@ class Simulation {
   void keep_list_fresh();
   void compute_forces(Recording* record);
   double choose_step();
+  bool moves_without_inertia() const;
+  void drop_inertia();
+  double leapfrog_step();
   void rebuild_lists();
   void prune_near(double list_age);
   void require_finite_positions() const;
@@ -140,6 +148,7 @@ class Simulation {
   Setup setup_;
   PairTable table_;
   ForcePass pass_;
+  InertiaFree inertia_free_;
   State state_;
   bool refreshed_ = false;       // between refresh() and move()
   bool evaluated_ = false;       // between evaluate() and move()

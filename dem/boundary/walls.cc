@@ -59,30 +59,6 @@ double Walls::modulus(const PairTable& table, const ContactModel& model, std::ui
   return 4.0 / 3 * model.stiffness_factor / (one + wall_compliance);
 }
 
-namespace {
-
-template <class Visit>
-void with_wall_law(const ContactModel& model, double modulus, Visit&& visit) {
-  if (model.elasticity == Elasticity::linear)
-    visit(KelvinVoigt<LinearSpring>{{model.normal_stiffness}, model.damping_ratio});
-  else
-    visit(KelvinVoigt<HertzSpring>{{modulus, 0.0}, model.damping_ratio});
-}
-
-NormalInput wall_input(const Body& b, double gap, double rate, PassTime clock) {
-  NormalInput in;
-  in.overlap = gap - b.radius;
-  in.rate = rate;
-  in.elastic_radius = b.radius;
-  in.sintering_radius = 0;
-  in.reduced_mass = 1 / b.inverse_mass;
-  in.step = clock.step;
-  in.time = clock.time;
-  return in;
-}
-
-}  // namespace
-
 void Walls::compute(Particles& particles, const PairTable& table, const ContactModel& model,
                     const std::vector<double>& expansion_step, PassTime clock, std::vector<WallRecord>* record) {
   force_.assign(wall.size(), Vec3::Zero());

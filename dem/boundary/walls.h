@@ -76,14 +76,15 @@ class Walls {
   void add_stiffness(const Particles&, const PairTable&, const ContactModel&, std::vector<double>& stiffness,
                      std::vector<double>& damping);
 
+  /// (4/3) E* of a particle of a material against the walls, stiffness factor included [Pa].
+  double modulus(const PairTable&, const ContactModel&, std::uint8_t material) const;
+
   std::vector<WallContact>& contacts() { return contacts_; }
   const std::vector<WallContact>& contacts() const { return contacts_; }
   std::vector<Wall>& reference() { return reference_; }
   const std::vector<Wall>& reference() const { return reference_; }
 
  private:
-  double modulus(const PairTable&, const ContactModel&, std::uint8_t material) const;
-
   WallMaterial material_;
   std::vector<WallContact> contacts_;
   std::vector<Wall> reference_;  // walls when the contacts were listed
@@ -91,5 +92,27 @@ class Walls {
   std::vector<double> normal_force_, stiffness_, damping_;
   std::vector<double> moduli_;  // of each material against the walls, of the last pass [Pa]
 };
+
+/// Calls visit(law) with the law of a wall contact; `modulus` as of Walls::modulus [Pa].
+template <class Visit>
+void with_wall_law(const ContactModel& model, double modulus, Visit&& visit) {
+  if (model.elasticity == Elasticity::linear)
+    visit(KelvinVoigt<LinearSpring>{{model.normal_stiffness}, model.damping_ratio});
+  else
+    visit(KelvinVoigt<HertzSpring>{{modulus, 0.0}, model.damping_ratio});
+}
+
+/// The input of a wall contact's law; `gap` from the centre to the wall's surface [m], `rate` of it less growth [m/s].
+inline NormalInput wall_input(const Body& b, double gap, double rate, PassTime clock) {
+  NormalInput in;
+  in.overlap = gap - b.radius;
+  in.rate = rate;
+  in.elastic_radius = b.radius;
+  in.sintering_radius = 0;
+  in.reduced_mass = 1 / b.inverse_mass;
+  in.step = clock.step;
+  in.time = clock.time;
+  return in;
+}
 
 }  // namespace densify::dem

@@ -159,6 +159,10 @@ void check_container(const Scene& scene, const ScenePlaces& places) {
 
 void check_scene(const Scene& scene, const ScenePlaces& places) {
   check_container(scene, places);
+  if (scene.integration.method == IntegrationMethod::inertia_free && scene.contact.friction)
+    places.integration->fail("method",
+                             "\"inertia_free\" has no rotations, which [contact.friction] needs; remove it, or "
+                             "use method = \"explicit\"");
   check_materials(scene, places);
   const auto n = std::uint8_t(scene.materials.size());
   for (std::uint8_t a = 0; a < n; ++a) {

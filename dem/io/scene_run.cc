@@ -32,11 +32,38 @@ void read_loads(Section& root, Scene& scene) {
   });
 }
 
+namespace {
+
+void read_inertia_free(Section& section, InertiaFreeSettings& s) {
+  constexpr Range share{0.0, 1.0, Bound::exclusive, Bound::inclusive};
+  section.choice("from", s.from, {{"activation", InertiaFreeFrom::activation}, {"start", InertiaFreeFrom::start}},
+                 Need::optional, "leap-frog until the first necks, or never");
+  section.quantity("tangential_share", s.tangential_share, dim::none, share, Need::optional,
+                   "f, resistance of a contact across its normal over that along it; results are those of f -> 0");
+  section.quantity("step_tolerance", s.step_tolerance, dim::none, Range::positive(), Need::optional,
+                   "error of a contact's approach in one step over the mean radius");
+  section.quantity("force_tolerance", s.force_tolerance, dim::none, share, Need::optional,
+                   "unbalanced over contact force at which a step counts as solved");
+  section.quantity("fixed_step", s.fixed_step, dim::time, Range::positive(), Need::optional,
+                   "one step for the whole run instead of the error control");
+}
+
+}  // namespace
+
 void read_integration(Section& root, Scene& scene, ScenePlaces& places) {
   IntegrationSettings& s = scene.integration;
   constexpr Range share{0.0, 1.0, Bound::exclusive, Bound::inclusive};
   root.section("integration", Need::defaulted, "time steps of the leap-frog (4.8-4.13)", [&](Section& section) {
     places.integration = section;
+    section.choice("method", s.method,
+                   {{"explicit", IntegrationMethod::leapfrog}, {"inertia_free", IntegrationMethod::inertia_free}},
+                   Need::optional,
+                   "leap-frog with scaled masses, or from activation on velocities that balance all forces");
+    if (section.documenting() || s.method == IntegrationMethod::inertia_free)
+      section.section("inertia_free", Need::defaulted, "steps without inertia, by their error",
+                      [&](Section& below) { read_inertia_free(below, s.inertia_free); });
+    else
+      refuse_keys(section, {"inertia_free"}, "belongs to method = \"inertia_free\"; remove it, or set method");
     section.choice("rule", s.rule, {{"particle_sum", StepRule::particle_sum}, {"thesis", StepRule::thesis}},
                    Need::optional, "limit from the sums over each particle's contacts, or pair by pair (4.71)-(4.75)");
     section.quantity("step_safety", s.step_safety, dim::none, share, Need::optional,

@@ -231,6 +231,7 @@ void write_state(Hdf5Writer& file, const State& state) {
   file.list<double>("/state/clock",
                     {state.temperature, state.time, state.last_step, state.stable_step, state.critical_step}, "");
   file.attribute("/state", "steps", state.steps);
+  file.attribute("/state", "inertia_free", std::uint64_t(state.inertia_free));
 }
 
 State read_state(const Hdf5Reader& file, const Simulation& simulation) {
@@ -267,6 +268,7 @@ State read_state(const Hdf5Reader& file, const Simulation& simulation) {
   s.stable_step = clock[3];
   s.critical_step = clock[4];
   s.steps = file.attribute<std::uint64_t>("/state", "steps");
+  s.inertia_free = file.attribute<std::uint64_t>("/state", "inertia_free") != 0;
   require(std::isfinite(s.time) && std::isfinite(s.temperature), "/state/clock");
   return s;
 }

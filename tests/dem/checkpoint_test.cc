@@ -205,7 +205,7 @@ TEST(Checkpoint, OtherFormatNamed) {
   Simulation simulation(cylinder_packing(1));
   write_checkpoint(folder / "c", simulation, {}, owner);
   std::string bytes = content_of(folder / "c");
-  const auto at = bytes.find("format 1");
+  const auto at = bytes.find("format " + std::to_string(checkpoint_format));
   bytes[at + 7] = '9';
   EXPECT_NE(refusal(folder / "d", bytes, simulation).find("format 9"), std::string::npos);
 }

@@ -103,7 +103,7 @@ class StateBits {
         add(w.shape), add(w.point), add(w.normal), add(w.radius), add(w.velocity), add(w.radius_rate), bits_ += w.name;
     for (const auto& w : s.walls.contacts()) add(w.particle), add(w.wall), add(w.tangential);
     add(s.punch), add(s.expansion), add(s.temperature), add(s.time), add(s.last_step), add(s.stable_step);
-    add(s.critical_step), add(s.steps), add(s.active_since);
+    add(s.critical_step), add(s.steps), add(s.inertia_free), add(s.active_since);
   }
   bool operator==(const StateBits&) const = default;
   std::size_t size() const { return bits_.size(); }

@@ -1,0 +1,71 @@
+#pragma once
+// Time steps without inertia: the velocities of a step are those for which every particle's forces at its end balance.
+// Sintering contacts are dashpots or Maxwell elements, loose contacts and bonds springs, which over a step h answer
+// like a dashpot k h: backward Euler through the laws' own `update`.
+
+#include "dem/material/pair_table.h"
+#include "dem/network/network_operator.h"
+
+namespace densify::dem {
+
+struct Setup;
+struct State;
+
+enum class IntegrationMethod : std::uint8_t { leapfrog, inertia_free };
+enum class InertiaFreeFrom : std::uint8_t {
+  start,      ///< the whole process
+  activation  ///< leap-frog until the first necks, then without inertia to the end
+};
+
+struct InertiaFreeSettings {
+  InertiaFreeFrom from = InertiaFreeFrom::activation;
+  double tangential_share = 0.01;  ///< f, resistance of a contact across its normal over that along it
+  double step_tolerance = 2e-4;    ///< error of a contact's approach in one step over the mean radius
+  double force_tolerance = 3e-3;   ///< unbalanced over contact force (Euclidean norms) at which a step counts as solved
+  double fixed_step = unset;       ///< replaces the error control [s]
+};
+
+/// What it took since the simulation was made.
+struct InertiaFreeCount {
+  std::uint64_t steps = 0;
+  std::uint64_t rejected = 0;    ///< trials that were too long
+  std::uint64_t solutions = 0;   ///< linear systems
+  std::uint64_t iterations = 0;  ///< of conjugate gradients, in all
+};
+
+class InertiaFree {
+ public:
+  /// From forces just evaluated at time t to positions at t + h: finds h <= `longest` [s] and the velocities, moves
+  /// particles, walls and cell, and leaves the next proposal in State::stable_step.  The laws' histories follow in the
+  /// next force pass.  `guided` is the load-controlled wall.  Returns h [s].
+  ///
+  /// Solved are sum_c (F_c n + f c_n v_t) + F_ext = 0 for each particle and sum F = p A for the guided wall, all at the
+  /// end of the step, with F_c(v) what the law's `update` will give; by Newton's method with difference quotients of
+  /// `update` and conjugate gradients.  h keeps (h/2) mean |v - v_before| of the contacts below step_tolerance x
+  /// mean radius, which estimates backward Euler's error; a mean, because a contact that snaps moves at once however
+  /// short the step is.
+  /// Throws RunError when no step balances the forces.
+  double move(State&, const Setup&, const PairTable&, std::optional<std::size_t> guided, double longest);
+
+  const InertiaFreeCount& count() const { return count_; }
+  std::size_t bytes() const;
+
+ private:
+  struct Trial;
+
+  Trial prepare(const State&, const Setup&, const PairTable&, std::optional<std::size_t> guided, double step);
+  void respond(const State&, const Setup&, const Trial&);
+  bool balance(const State&, const Setup&, const Trial&);
+  double error_estimate(const State&, const Trial&, const Eigen::VectorXd& before) const;
+  void apply(State&, const Trial&) const;
+
+  NetworkOperator network_{0, std::nullopt};
+  std::optional<PairTable> table_;  // at the end of the step
+  std::vector<double> growth_;      // relative, of each material over the step
+  Eigen::VectorXd external_;        // forces from outside at the end of the step [N]
+  Eigen::VectorXd velocity_, resultant_, change_;
+  double force_scale_ = 0;  // norm of all contact forces [N]
+  InertiaFreeCount count_;
+};
+
+}  // namespace densify::dem
