@@ -88,6 +88,9 @@ class Walls {
   /// (4/3) E* of a particle of a material against the walls, stiffness factor included [Pa].
   double modulus(const PairTable&, const ContactModel&, std::uint8_t material) const;
 
+  /// (4/3) E* of a particle of a material against the walls, stiffness factor included [Pa].
+  double modulus(const PairTable&, const ContactModel&, std::uint8_t material) const;
+
   std::vector<WallContact>& contacts() { return contacts_; }
   const std::vector<WallContact>& contacts() const { return contacts_; }
   std::vector<Wall>& reference() { return reference_; }
