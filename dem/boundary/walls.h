@@ -68,12 +68,6 @@ class Walls {
   /// Stored in the springs of all wall contacts, normal and tangential [J].
   double elastic_energy(const Particles&, const PairTable&, const ContactModel&) const;
 
-  /// Throws RunError when the centre of a listed particle is beyond its wall.
-  void require_inside(const Particles&) const;
-
-  /// Stored in the springs of all wall contacts, normal and tangential [J].
-  double elastic_energy(const Particles&, const PairTable&, const ContactModel&) const;
-
   /// Share of the skin that wall motion since the last rebuild has used up, on its own.
   double age(double skin) const;
 
@@ -90,9 +84,6 @@ class Walls {
   /// Adds stiffness and damping of the wall contacts to the particles' sums, for the time step limit.
   void add_stiffness(const Particles&, const PairTable&, const ContactModel&, std::vector<StiffnessSum>& stiffness,
                      std::vector<StiffnessSum>& damping);
-
-  /// (4/3) E* of a particle of a material against the walls, stiffness factor included [Pa].
-  double modulus(const PairTable&, const ContactModel&, std::uint8_t material) const;
 
   /// (4/3) E* of a particle of a material against the walls, stiffness factor included [Pa].
   double modulus(const PairTable&, const ContactModel&, std::uint8_t material) const;
