@@ -98,7 +98,7 @@ double sphere_volume(double r) {
 }  // namespace
 
 StepControl step_control(const IntegrationSettings& settings, const Schedule& schedule) {
-  constexpr double share_of_process = 1e-3, span = 200, share_of_peak = 0.01;
+  constexpr double share_of_process = 1e-3, span = 20, share_of_peak = 0.01;
   StepControl c;
   c.measure = settings.inertia_measure;
   c.largest_step = std::isnan(settings.largest_step) ? share_of_process * schedule.end() : settings.largest_step;
@@ -412,6 +412,8 @@ Column Simulation::column() const {
 
 void Simulation::equalise_inertia() {
   const auto& settings = setup_.integration;
+  if (state_.last_step > 0 && stiffness_.next_step > state_.last_step * (1 + 1e-9))
+    calm(state_.particles, state_.last_step / stiffness_.next_step);
   Punch& punch = state_.punch;
   equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety,
            punch.mass > 0 ? carriage_share : 0.0, settings.threads);
