@@ -15,12 +15,13 @@ namespace {
 using Vector = Eigen::VectorXd;
 using End = NetworkLink::End;
 
-constexpr int most_newton = 16;            // solutions of one trial
-constexpr double young_neck = 0.15;        // neck over radius below which a neck resists at least as one of this size
-constexpr double breaking_share = 0.05;    // of the first trial, from which on a force that breaks away is accepted
-constexpr double breaking_force = 0.1;     // unbalanced over contact force that may break away in one step
-constexpr double smallest_force = 1e-300;  // [N], where nothing acts at all
-constexpr double shortest_share = 1e-6;    // of the first trial, before a step counts as impossible
+constexpr int most_newton = 16;          // solutions of one trial
+constexpr double young_neck = 0.15;      // neck over radius below which a neck resists at least as one of this size
+constexpr double breaking_share = 0.05;  // of the first trial, from which on a force that breaks away is accepted
+constexpr double breaking_force = 0.1;   // unbalanced over contact force that may break away in one step
+constexpr double furthest_over_radius = 0.25;  // that a particle may move in one step
+constexpr double smallest_force = 1e-300;      // [N], where nothing acts at all
+constexpr double shortest_share = 1e-6;        // of the first trial, before a step counts as impossible
 
 /// A contact at the end of a trial step.
 struct StepContact {
@@ -263,7 +264,10 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, s
     const bool solved = balance(s, setup, trial);
     const bool breaks =
         !solved && h < breaking_share * std::min(proposed, left) && resultant_.norm() <= breaking_force * force_scale_;
-    const bool balanced = solved || breaks;
+    // A particle that next to nothing holds must not be thrown across its neighbours.
+    double furthest = 0;
+    for (const Body& b : ahead_.body) furthest = std::max(furthest, h * b.velocity.norm() / b.radius);
+    const bool balanced = (solved || breaks) && furthest <= furthest_over_radius;
     const double error = balanced ? error_estimate(s, trial, before) / settings.step_tolerance : 0.0;
     constexpr double margin = 0.8, least = 0.2, most = 2, lessened = 0.9;
     // A contact that snaps open moves at once by what its spring held: no shorter step lessens that.
