@@ -264,16 +264,24 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, s
     const bool solved = balance(s, setup, trial);
     const bool breaks =
         !solved && h < breaking_share * std::min(proposed, left) && resultant_.norm() <= breaking_force * force_scale_;
-    // A particle that next to nothing holds must not be thrown across its neighbours.
-    double furthest = 0;
-    for (const Body& b : ahead_.body) furthest = std::max(furthest, h * b.velocity.norm() / b.radius);
-    const bool balanced = (solved || breaks) && furthest <= furthest_over_radius;
+    // A particle that next to nothing holds must not be thrown across its neighbours; where a shorter step does not
+    // help, it goes its way in several.
+    bool thrown = false;
+    for (std::size_t p = 0; p < ahead_.size(); ++p) {
+      const double way = h * ahead_.body[p].velocity.norm() / ahead_.body[p].radius;
+      if (way <= furthest_over_radius) continue;
+      thrown = true;
+      velocity_.segment<3>(Eigen::Index(3 * p)) *= furthest_over_radius / way;
+    }
+    const bool held_back = thrown && h < breaking_share * std::min(proposed, left);
+    if (held_back) respond(s, setup, trial);
+    const bool balanced = (solved || breaks) && (!thrown || held_back);
     const double error = balanced ? error_estimate(s, trial, before) / settings.step_tolerance : 0.0;
     constexpr double margin = 0.8, least = 0.2, most = 2, lessened = 0.9;
     // A contact that snaps open moves at once by what its spring held: no shorter step lessens that.
     const bool snapped = balanced && error > lessened * last_error;
     if (balanced) last_error = error;
-    if (balanced && (fixed || breaks || error <= 1 || snapped)) {
+    if (balanced && (fixed || breaks || held_back || error <= 1 || snapped)) {
       apply(s, trial);
       ++count_.steps;
       // The error goes as h^2 where the rates change steadily.
