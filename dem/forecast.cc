@@ -60,8 +60,11 @@ double limit_of(const Grain& g, const Scene& scene, const PairProperties& row, d
   });
   const double ratio = g.necked ? model.sintering->damping_ratio : model.damping_ratio;
   l.damper = 2 * ratio * std::sqrt(g.reduced_mass * l.stiffness);
-  l = with_tangential_share(l, model, g.reduced_mass);
-  const double spring_limit = node_limit(g.mass, contacts * l.stiffness, contacts * l.damper);
+  const Linearisation across = tangential_share(l, model, g.reduced_mass);
+  // The stiffest direction of three contacts evenly around the grain; fewer lie in one line.
+  auto stiffest = [&](double k, double k_t) { return contacts < 3 ? contacts * std::max(k, k_t) : 1.5 * (k + k_t); };
+  const double spring_limit =
+      node_limit(g.mass, stiffest(l.stiffness, across.stiffness), stiffest(l.damper, across.damper));
   if (g.neck == 0) return spring_limit;
   const double viscosity = std::pow(g.neck, 4) / row.mobility_factor;
   return std::min(spring_limit, node_limit(g.mass, 0, contacts * viscosity));
