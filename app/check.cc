@@ -41,10 +41,11 @@ int check(const dem::Scene& scene, const CheckCommand& command) {
              scene.schedule.end() / ahead.steps);
   const double bytes = n * (bytes_per_particle + (command.threads > 1 ? bytes_of_record : 0));
   fmt::print("memory                          about {:.3g} MB for the state\n", bytes * 1e-6);
+  if (scene.realisations > 1) fmt::print("realisations                    {}\n", scene.realisations);
   fmt::print("time                            about {:.2g} s on {} thread{} (at 1e-7 s a particle and step)\n",
-             ahead.steps * n * seconds_per_particle_step / command.threads, command.threads,
+             scene.realisations * ahead.steps * n * seconds_per_particle_step / command.threads, command.threads,
              command.threads == 1 ? "" : "s");
-  if (scene.integration.fixed_step > ahead.smallest_limit)
+  if (scene.integration.inertia == dem::Inertia::uniform && scene.integration.fixed_step > ahead.smallest_limit)
     fmt::print(
         "warning: integration.fixed_step is above the smallest critical step of this forecast; the run tests it "
         "against the packing before the first step and on the way, and stops where it is too large\n");

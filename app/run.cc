@@ -30,6 +30,9 @@ void print_summary(const dem::RunSummary& s, const fs::path& folder) {
   fmt::print("{:<28s}{:>10.2f}{:>8.1f}\n", "total", s.wall_seconds, 100.0);
   fmt::print("{} steps on {} thread{}, {} neighbour list builds, {:.1f} MB of state\n", s.steps, s.threads,
              s.threads == 1 ? "" : "s", s.list_builds, double(s.bytes) * 1e-6);
+  if (const auto& c = s.inertia_free; c.steps > 0)
+    fmt::print("{} of them without inertia ({} trials rejected): {} linear systems, {} iterations\n", c.steps,
+               c.rejected, c.solutions, c.iterations);
   fmt::print("warnings: {}\n", s.warnings.empty() ? "none" : std::to_string(s.warnings.size()));
   for (const auto& w : s.warnings) fmt::print("  {}\n", w);
   fmt::print("\nresults in {}\n", folder.string());

@@ -73,7 +73,7 @@ std::string target_text(const Ladder& ladder, const std::vector<TradeRow>& rows,
 }
 
 void print_trade(const Ladder& ladder, const std::vector<TradeRow>& rows, const Points& points) {
-  fmt::print("\n{:<28s}{:>10s}{:>10s}{:>9s}{:>10s}{:>20s}  {:<22s}{:>8s}\n", "rung", "cpu [s]", "wall [s]", "MB",
+  fmt::print("\n{:<28s}{:>10s}{:>10s}{:>9s}{:>10s}{:>22s}  {:<22s}{:>8s}\n", "rung", "cpu [s]", "wall [s]", "MB",
              "steps", "density error", "at", "spread");
   const auto front = pareto_front(rows);
   for (const TradeRow& row : rows) {
@@ -86,8 +86,8 @@ void print_trade(const Ladder& ladder, const std::vector<TradeRow>& rows, const 
     const bool best = std::find(front.begin(), front.end(), row.rung) != front.end();
     const std::string error =
         rung.converged ? "converged"
-                       : fmt::format("{:+.5f} +- {:.5f}", row.density_error[row.worst].mean, row.standard_error());
-    fmt::print("{:>10.3f}{:>10.3f}{:>9.2f}{:>10.0f}{:>20s}  {:<22s}{:>8.5f}{}\n", row.cpu, row.wall, row.bytes * 1e-6,
+                       : fmt::format("{:+.2e} +- {:.1e}", row.density_error[row.worst].mean, row.standard_error());
+    fmt::print("{:>10.3f}{:>10.3f}{:>9.2f}{:>10.0f}{:>22s}  {:<22s}{:>8.1e}{}\n", row.cpu, row.wall, row.bytes * 1e-6,
                row.steps, error, rung.converged ? "" : points.names[row.worst], row.spread, best ? "  *" : "");
   }
   fmt::print(
@@ -100,7 +100,7 @@ void print_trade(const Ladder& ladder, const std::vector<TradeRow>& rows, const 
   for (int n = 1; n <= 2 * ladder.realisations; n *= 2) fmt::print("{:>10d}", n);
   for (const std::size_t r : front) {
     fmt::print("\n{:<28s}", ladder.rungs[rows[r].rung].name);
-    for (int n = 1; n <= 2 * ladder.realisations; n *= 2) fmt::print("{:>10.5f}", error_of_mean(rows[r], n));
+    for (int n = 1; n <= 2 * ladder.realisations; n *= 2) fmt::print("{:>10.1e}", error_of_mean(rows[r], n));
   }
 
   fmt::print("\n\norders of convergence\n");
@@ -123,7 +123,7 @@ void print_trade(const Ladder& ladder, const std::vector<TradeRow>& rows, const 
 /// trade.png and trade.svg beside trade.csv, by the shipped script.
 void plot(const fs::path& folder) {
   const std::string script = data_path("tools/plot_trade.py").string();
-  const std::string files = "'" + (folder / "trade.csv").string() + "' -o '" + (folder / "trade").string() + "'";
+  const std::string files = fmt::format("'{}' -o '{}'", (folder / "trade.csv").string(), (folder / "trade").string());
   bool drawn = false;
   for (const char* python : {"python3", "/usr/bin/python3"})  // the second is the one that Debian's packages serve
     drawn = drawn || std::system(fmt::format("{} '{}' {} 2>/dev/null", python, script, files).c_str()) == 0;

@@ -34,7 +34,8 @@ std::string_view kind_name(SceneNode::Kind kind);
 SceneNode parse_toml(std::string_view text, std::string_view source_name);
 
 /// Applies "path.to.key=value": the value as TOML where it is TOML, as a text otherwise; list entries are numbered from
-/// 1; missing tables are created; an empty value removes the key.  Throws InputError "--set path.to.key=value: problem".
+/// 1; missing tables are created; an empty value removes the key.  Throws InputError "--set path.to.key=value:
+/// problem".
 void apply_override(SceneNode& root, std::string_view assignment);
 
 /// `parent.key` as users write it, with quotes round a key that TOML does not take bare.

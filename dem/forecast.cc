@@ -122,11 +122,11 @@ class MeanField {
 Forecast forecast(const Scene& scene, const PowderSample& powder, double at_start) {
   MeanField field(scene, powder);  // checks that every property the model needs is there
   if (scene.integration.inertia == Inertia::equalised) {
-    // The step is chosen and the masses follow; the control knows its steps only when it runs: a third of the largest
-    // one was the mean in hot pressing.
+    // The step is chosen and the masses follow.  The control knows its steps only when it runs; three quarters of the
+    // largest one were the mean in hot pressing.
     const double step = std::isnan(scene.integration.inertia_measure)
                             ? scene.integration.fixed_step
-                            : step_control(scene.integration, scene.schedule).largest_step / 3;
+                            : 0.75 * step_control(scene.integration, scene.schedule).largest_step;
     return {scene.schedule.end() / step, std::numeric_limits<double>::infinity()};
   }
   // A given specimen may hold its grains by more contacts than the mean field.

@@ -46,7 +46,7 @@ std::string text(const char* format, double a) {
 }
 
 /// Share of the process in which a specimen may move more than a quasi-static one does.
-constexpr double tolerated_motion = 0.02;
+constexpr double tolerated_motion = 0.05;
 
 struct Paths {
   explicit Paths(const fs::path& folder)
@@ -360,6 +360,7 @@ RunSummary Run::whole() {
   summary_.threads = sim_->setup().integration.threads;
   summary_.list_builds = state.contacts.builds;
   summary_.bytes = sim_->bytes();
+  summary_.inertia_free = sim_->inertia_free_count();
   summary_.end_time = state.time;
   // Sampled shares are scaled to the time that is not accounted for otherwise.
   const double rest = std::max(0.0, summary_.wall_seconds - packing_seconds_ - output_seconds_ - checkpoint_seconds_);

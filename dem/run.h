@@ -47,7 +47,8 @@ struct RunSummary {
   std::uint64_t steps = 0;
   int threads = 1;  ///< in use: at most those asked for, fewer for few particles
   std::size_t list_builds = 0;
-  std::size_t bytes = 0;  ///< of state and scratch
+  std::size_t bytes = 0;          ///< of state and scratch
+  InertiaFreeCount inertia_free;  ///< steps without inertia and what they took
   Measures last;
   double end_time = 0;  ///< process time [s]
   std::vector<std::string> warnings;

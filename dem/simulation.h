@@ -41,7 +41,7 @@ struct IntegrationSettings {
   Inertia inertia = Inertia::uniform;
   double fixed_step = unset;       ///< replaces the rule; with equalised inertia the step dt* of the whole run [s]
   double largest_step = unset;     ///< [s]
-  double smallest_step = unset;    ///< of the step control [s]; unset: largest_step / 200
+  double smallest_step = unset;    ///< of the step control [s]; unset: largest_step / 20
   double inertia_measure = unset;  ///< inertial number that the step control of equalised inertia keeps
   int limit_interval = 20;         ///< steps between two evaluations of the limit
   double mass_scaling = 1;         ///< alpha_m (4.80)

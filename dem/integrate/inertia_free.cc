@@ -15,48 +15,50 @@ namespace {
 using Vector = Eigen::VectorXd;
 using End = NetworkLink::End;
 
-constexpr int most_newton = 10;          // solutions of one trial
+constexpr int most_newton = 16;          // solutions of one trial
 constexpr double young_neck = 0.15;      // neck over radius below which a neck resists at least as one of this size
-constexpr double shortest_share = 1e-6;  // of the first trial, before a step counts as impossible
+constexpr double breaking_share = 0.05;  // of the first trial, from which on a force that breaks away is accepted
+constexpr double breaking_force = 0.1;   // unbalanced over contact force that may break away in one step
+constexpr double furthest_over_radius = 0.25;  // that a particle may move in one step
+constexpr double smallest_force = 1e-300;      // [N], where nothing acts at all
+constexpr double shortest_share = 1e-6;        // of the first trial, before a step counts as impossible
 
-/// A contact over a trial step.
+/// A contact at the end of a trial step.
 struct StepContact {
-  NormalInput now;        // at the present positions
-  double step, end;       // [s], process time
-  double growth;          // thermal, of r_i + r_j [m]
+  NormalInput input;      // there, but for the rate
   double growth_in_rate;  // thermal, as the law's rate counts it [m]
 };
 
-/// Force at the end of the step when the ends part at `rate` [m/s]: what the force pass will find there.
+/// Force when the ends part at `rate` [m/s]: what the force pass will find there.
 template <class Law>
-double force_at_end(const Law& law, const NeckHistory* neck, const StepContact& c, double rate) {
-  NormalInput in = c.now;
-  in.overlap += c.step * rate - c.growth;
-  in.rate = rate - c.growth_in_rate / c.step;
-  in.step = c.step;
-  in.time = c.end;
+NormalForce force_at_end(const Law& law, const NeckHistory* neck, const StepContact& c, double rate) {
+  NormalInput in = c.input;
+  in.rate = rate - c.growth_in_rate / in.step;
   if constexpr (has_necks<Law>) {
     NeckHistory after = *neck;
-    if (after.phase == NeckPhase::loose && in.overlap >= 0) return 0;
-    return law.update(in, after).total;
+    if (after.phase == NeckPhase::loose && in.overlap >= 0) return {};
+    return law.update(in, after);
   } else {
-    return in.overlap >= 0 ? 0.0 : law.update(in).total;
+    return in.overlap >= 0 ? NormalForce{} : law.update(in);
   }
 }
 
-/// dF/d(rate) by a difference towards approach.  A neck resists at least as one of 0.15 of its radius does, since its
-/// own viscosity, which grows as a^4, would let it shoot over in the first steps of its life.
+/// dF/d(rate) by a difference towards approach.  A young neck's own viscosity, which grows as a^4, would let it shoot
+/// over; it resists at least as a share `young` of what a neck of 0.15 of the radius does.
 template <class Law>
-double coefficient(const Law& law, const NeckHistory* neck, const StepContact& c, double rate, double force) {
+double coefficient(const Law& law, const NeckHistory* neck, const StepContact& c, double rate, double force,
+                   double young) {
   constexpr double share = 1e-4, smallest = 1e-7;
-  const double radius = 0.5 * (c.now.elastic_radius + std::max(c.now.elastic_radius, c.now.sintering_radius));
-  const double change = std::max(share * std::abs(rate), smallest * radius / c.step);
-  double slope = std::max(0.0, (force - force_at_end(law, neck, c, rate - change)) / change);
+  const NormalInput& in = c.input;
+  const double change = std::max(share * std::abs(rate), smallest * in.elastic_radius / in.step);
+  StepContact nearer = c;
+  nearer.input.overlap -= change * in.step;
+  double slope = std::max(0.0, (force - force_at_end(law, neck, nearer, rate - change).total) / change);
   if constexpr (has_necks<Law>)
     if (Law::flows(neck->phase)) {
-      const double eta = law.viscosity(young_neck * c.now.sintering_radius);
-      const double k = law.loose.spring.tangent(neck->elastic, c.now.elastic_radius);
-      const double least = law.settings.model == SinteringModel::viscous ? eta : k * c.step / (1 + k * c.step / eta);
+      const double eta = young * law.viscosity(young_neck * in.sintering_radius);
+      const double k = law.loose.spring.tangent(neck->elastic, in.elastic_radius);
+      const double least = law.settings.model == SinteringModel::viscous ? eta : k * in.step / (1 + k * in.step / eta);
       slope = std::max(slope, least);
     }
   return slope;
@@ -70,11 +72,12 @@ struct InertiaFree::Trial {
   double wall_stretch = 1;  // of the lateral walls by heat over the step
   double load = 0;          // p A on the guided wall [N]
   std::optional<std::size_t> guided;
+  mutable double young = 1;  // share of a young neck's least resistance, falls from iterate to iterate
 };
 
 InertiaFree::Trial InertiaFree::prepare(const State& s, const Setup& setup, const PairTable& table,
                                         std::optional<std::size_t> guided, double step) {
-  Trial t{step, s.time + step, 1, 0, guided};
+  Trial t{step, s.time + step, 1, 0, guided, 1};
   const double breakpoint = setup.schedule.next_breakpoint(s.time);
   if (t.end >= breakpoint) t.end = breakpoint;
   const double temperature = setup.schedule.temperature(t.end);
@@ -97,70 +100,111 @@ InertiaFree::Trial InertiaFree::prepare(const State& s, const Setup& setup, cons
   return t;
 }
 
+/// Particles, cell and walls as they will be at the end of the step with the present velocities.
+void InertiaFree::look_ahead(const State& s, const Trial& t) {
+  const bool deforming = s.cell.periodic && !s.cell.velocity_gradient.isZero(0);
+  const Mat3 flow = t.step * s.cell.velocity_gradient;
+  ahead_.material = s.particles.material;
+  ahead_.body = s.particles.body;
+  for (std::size_t p = 0; p < ahead_.size(); ++p) {
+    Body& b = ahead_.body[p];
+    if (deforming) b.position += flow * (b.position - s.cell.origin);
+    b.velocity = velocity_.segment<3>(Eigen::Index(3 * p));
+    b.position += t.step * b.velocity;
+    b.radius *= 1 + growth_[ahead_.material[p]];
+  }
+  cell_ahead_ = s.cell;
+  if (deforming) cell_ahead_.h += flow * s.cell.h;
+  walls_ahead_ = s.walls;
+  for (std::size_t w = 0; w < walls_ahead_.wall.size(); ++w) {
+    Wall& wall = walls_ahead_.wall[w];
+    if (t.guided == w) wall.velocity = velocity_[network_.rows() - 1] * Vec3::UnitZ();
+    wall.point += t.step * wall.velocity;
+    wall.radius += t.step * wall.radius_rate;
+    constexpr double lateral = 0.5;
+    if (wall.shape == WallShape::cylinder)
+      wall.radius *= t.wall_stretch;
+    else if (std::abs(wall.normal[2]) < lateral)
+      wall.point *= t.wall_stretch;
+  }
+}
+
 void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t) {
+  look_ahead(s, t);
   network_.clear();
   resultant_ = external_;
   double squares = external_.squaredNorm();
   const bool deforming = s.cell.periodic && !s.cell.velocity_gradient.isZero(0);
   const double lateral_share = setup.integration.inertia_free.tangential_share;
-  const ContactWorld world{s.particles, s.contacts, s.cell, *table_, setup.contact, s.walls};
-  visit_contacts(world, s.contacts.skin, [&](const ContactView& view, const auto& law, const NeckHistory* neck) {
+  const ContactWorld world{ahead_, s.contacts, cell_ahead_, *table_, setup.contact, walls_ahead_};
+  visit_contacts(world, 0, [&](const ContactView& view, const auto& law, const NeckHistory* neck) {
     NetworkLink link{view.normal, 0, 0, view.i, view.j, End::particle};
-    StepContact c{view.input, t.step, t.end, 0, 0};
-    const Body& a = s.particles.body[view.i];
-    const double grown_i = growth_[s.particles.material[view.i]];
+    StepContact c{view.input, 0};
+    c.input.step = t.step;
+    c.input.time = t.end;
+    const Body& a = ahead_.body[view.i];
+    // Relative growths over the step, of the radii at its end.
+    const double grown_i = growth_[ahead_.material[view.i]] / (1 + growth_[ahead_.material[view.i]]);
     Vec3 motion;
     if (view.at_wall) {
-      const Wall& wall = s.walls.wall[view.j];
-      link.end = t.guided && view.j == *t.guided ? End::guided_wall : End::fixed_wall;
+      const Wall& wall = walls_ahead_.wall[view.j];
+      const bool guided = t.guided && view.j == *t.guided;
+      link.end = guided ? End::guided_wall : End::fixed_wall;
       motion = network_.relative(link, velocity_);
-      c.growth = c.growth_in_rate = grown_i * a.radius;
-      if (wall.shape == WallShape::cylinder) {
+      if (wall.shape == WallShape::cylinder)
         motion += wall.radius_rate * view.normal;
-        c.growth -= (t.wall_stretch - 1) * wall.radius;
-      } else {
-        if (link.end == End::fixed_wall) motion += wall.velocity;
-        constexpr double lateral = 0.5;
-        if (std::abs(wall.normal[2]) < lateral) c.growth += (t.wall_stretch - 1) * wall.point.dot(wall.normal);
-      }
+      else if (!guided)
+        motion += wall.velocity;
+      c.growth_in_rate = grown_i * a.radius;
     } else {
-      const Body& b = s.particles.body[view.j];
-      const double grown_j = growth_[s.particles.material[view.j]];
+      const Body& b = ahead_.body[view.j];
+      const double grown_j = growth_[ahead_.material[view.j]] / (1 + growth_[ahead_.material[view.j]]);
       motion = network_.relative(link, velocity_);
       if (deforming) motion += s.cell.velocity_gradient * view.branch;
-      c.growth = c.growth_in_rate = grown_i * a.radius + grown_j * b.radius;
-      if (neck && neck->phase != NeckPhase::loose)  // through a neck only the way to its plane grows
-        c.growth_in_rate += 0.5 * view.input.overlap * (grown_i + grown_j);
+      // Through a neck only the way to its plane grows.
+      const double cut = neck && neck->phase != NeckPhase::loose ? 0.5 * view.input.overlap : 0.0;
+      c.growth_in_rate = grown_i * (a.radius + cut) + grown_j * (b.radius + cut);
     }
-    const bool loose = !neck || neck->phase == NeckPhase::loose;
     const double rate = motion.dot(view.normal);
-    if (loose && view.input.overlap >= 0 && view.input.overlap + t.step * rate - c.growth >= 0) return;
-    const double force = force_at_end(law, neck, c, rate);
-    link.coefficient = coefficient(law, neck, c, rate, force);
+    const NormalForce force = force_at_end(law, neck, c, rate);
+    link.coefficient = coefficient(law, neck, c, rate, force.total, t.young);
     link.lateral = lateral_share * link.coefficient;
-    network_.add_force(link, force * view.normal + link.lateral * (motion - rate * view.normal), resultant_);
+    network_.add_force(link, force.total * view.normal + link.lateral * (motion - rate * view.normal), resultant_);
     network_.add(link);
-    squares += force * force;
+    const double passive = force.total - force.sintering;  // the two may cancel
+    squares += passive * passive + force.sintering * force.sintering;
   });
   force_scale_ = std::sqrt(squares);
 }
 
 bool InertiaFree::balance(const State& s, const Setup& setup, const Trial& t) {
   const double goal = setup.integration.inertia_free.force_tolerance;
+  double best = std::numeric_limits<double>::infinity();
+  Vector best_velocity = velocity_;
+  constexpr double falling = 0.1;
   for (int n = 0;; ++n) {
+    t.young = std::pow(falling, n);
     respond(s, setup, t);
-    const double residual = resultant_.norm();
-    if (!std::isfinite(residual)) return false;
-    if (residual <= goal * force_scale_) return true;
-    if (n == most_newton) return false;
+    const double residual = resultant_.norm(), share = residual / std::max(force_scale_, smallest_force);
+    if (share <= goal) return true;
+    if (share < best) {
+      best = share;
+      best_velocity = velocity_;
+    }
+    if (n == most_newton || !std::isfinite(share)) break;
     constexpr double forcing = 0.1, within_goal = 0.3;
     change_.setZero(network_.rows());
     const SolverReport report =
         network_.solve(resultant_, change_, {std::max(forcing * residual, within_goal * goal * force_scale_), 0});
     ++count_.solutions;
     count_.iterations += std::uint64_t(report.iterations);
-    velocity_ += change_;
+    // Contacts that open and close from one iterate to the next come to rest on half the way.
+    constexpr int whole_steps = 10;
+    velocity_ += (n < whole_steps ? 1.0 : 0.5) * change_;
   }
+  velocity_ = best_velocity;
+  respond(s, setup, t);
+  return false;
 }
 
 double InertiaFree::error_estimate(const State& s, const Trial& t, const Vector& before) const {
@@ -174,19 +218,15 @@ double InertiaFree::error_estimate(const State& s, const Trial& t, const Vector&
 }
 
 void InertiaFree::apply(State& s, const Trial& t) const {
-  const bool deforming = s.cell.periodic && !s.cell.velocity_gradient.isZero(0);
-  const Mat3 flow = t.step * s.cell.velocity_gradient;
   for (std::size_t p = 0; p < s.particles.size(); ++p) {
-    Body& b = s.particles.body[p];
-    b.velocity = velocity_.segment<3>(Eigen::Index(3 * p));
-    if (deforming) b.position += flow * (b.position - s.cell.origin);
-    b.position += t.step * b.velocity;
+    s.particles.body[p].velocity = ahead_.body[p].velocity;
+    s.particles.body[p].position = ahead_.body[p].position;
   }
-  if (deforming) s.cell.h += flow * s.cell.h;
+  s.cell.h = cell_ahead_.h;
   if (t.guided) {
     s.punch.velocity = s.punch.mean_velocity = velocity_[network_.rows() - 1];
     s.punch.mean_acceleration = 0;
-    s.walls.wall[*t.guided].velocity = Vec3(0, 0, s.punch.velocity);
+    s.walls.wall[*t.guided].velocity = walls_ahead_.wall[*t.guided].velocity;
   }
   for (auto& w : s.walls.wall) {
     w.point += t.step * w.velocity;
@@ -220,13 +260,28 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, s
       h = 0.5 * left;
     const Trial trial = prepare(s, setup, table, guided, h);
     velocity_ = before;
-    const bool balanced = balance(s, setup, trial);
+    // A contact that breaks lets go of its force at once: no shorter step balances it, the next one does.
+    const bool solved = balance(s, setup, trial);
+    const bool breaks =
+        !solved && h < breaking_share * std::min(proposed, left) && resultant_.norm() <= breaking_force * force_scale_;
+    // A particle that next to nothing holds must not be thrown across its neighbours; where a shorter step does not
+    // help, it goes its way in several.
+    bool thrown = false;
+    for (std::size_t p = 0; p < ahead_.size(); ++p) {
+      const double way = h * ahead_.body[p].velocity.norm() / ahead_.body[p].radius;
+      if (way <= furthest_over_radius) continue;
+      thrown = true;
+      velocity_.segment<3>(Eigen::Index(3 * p)) *= furthest_over_radius / way;
+    }
+    const bool held_back = thrown && h < breaking_share * std::min(proposed, left);
+    if (held_back) respond(s, setup, trial);
+    const bool balanced = (solved || breaks) && (!thrown || held_back);
     const double error = balanced ? error_estimate(s, trial, before) / settings.step_tolerance : 0.0;
     constexpr double margin = 0.8, least = 0.2, most = 2, lessened = 0.9;
     // A contact that snaps open moves at once by what its spring held: no shorter step lessens that.
     const bool snapped = balanced && error > lessened * last_error;
     if (balanced) last_error = error;
-    if (balanced && (fixed || error <= 1 || snapped)) {
+    if (balanced && (fixed || breaks || held_back || error <= 1 || snapped)) {
       apply(s, trial);
       ++count_.steps;
       // The error goes as h^2 where the rates change steadily.

@@ -3,7 +3,7 @@
 // Sintering contacts are dashpots or Maxwell elements, loose contacts and bonds springs, which over a step h answer
 // like a dashpot k h: backward Euler through the laws' own `update`.
 
-#include "dem/material/pair_table.h"
+#include "dem/boundary/walls.h"
 #include "dem/network/network_operator.h"
 
 namespace densify::dem {
@@ -54,12 +54,16 @@ class InertiaFree {
   struct Trial;
 
   Trial prepare(const State&, const Setup&, const PairTable&, std::optional<std::size_t> guided, double step);
+  void look_ahead(const State&, const Trial&);
   void respond(const State&, const Setup&, const Trial&);
   bool balance(const State&, const Setup&, const Trial&);
   double error_estimate(const State&, const Trial&, const Eigen::VectorXd& before) const;
   void apply(State&, const Trial&) const;
 
   NetworkOperator network_{0, std::nullopt};
+  Particles ahead_;  // at the end of the step: bodies and materials
+  Cell cell_ahead_;
+  Walls walls_ahead_;
   std::optional<PairTable> table_;  // at the end of the step
   std::vector<double> growth_;      // relative, of each material over the step
   Eigen::VectorXd external_;        // forces from outside at the end of the step [N]

@@ -5,26 +5,34 @@
 
 namespace densify::dem {
 
-Mat3 fitted_strain_rate(const Particles& particles, const Cell& cell) {
+UniformFlow fitted_flow(const Particles& particles) {
   const double n = double(particles.size());
-  Vec3 centre = Vec3::Zero(), drift = Vec3::Zero();
+  UniformFlow f;
   for (const Body& b : particles.body) {
-    centre += b.position;
-    drift += b.velocity;
+    f.centre += b.position;
+    f.velocity += b.velocity;
   }
-  centre /= n;
-  drift /= n;
+  f.centre /= n;
+  f.velocity /= n;
   Mat3 spread = Mat3::Zero(), flow = Mat3::Zero();
   for (const Body& b : particles.body) {
-    const Vec3 x = b.position - centre;
+    const Vec3 x = b.position - f.centre;
     spread += x * x.transpose();
-    flow += (b.velocity - drift) * x.transpose();
+    flow += (b.velocity - f.velocity) * x.transpose();
   }
   // Few particles, or all in one plane or line, fix the rate in the directions that they span only.
   const double floor = 1e-6 * spread.trace();
-  Mat3 rate = floor > 0 ? Mat3(flow * (spread + floor * Mat3::Identity()).inverse()) : Mat3(Mat3::Zero());
-  if (cell.periodic) rate += cell.velocity_gradient;
-  return 0.5 * (rate + rate.transpose());
+  if (floor > 0) f.gradient = flow * (spread + floor * Mat3::Identity()).inverse();
+  return f;
+}
+
+void calm(Particles& particles, double share) {
+  const UniformFlow f = fitted_flow(particles);
+  for (Body& b : particles.body) {
+    const Vec3 flow = f.velocity + f.gradient * (b.position - f.centre);
+    b.velocity = flow + share * (b.velocity - flow);
+  }
+  for (Vec3& w : particles.angular_velocity) w *= share;
 }
 
 double contact_pressure(const Particles& particles, const StepStiffness& sums) {
@@ -39,7 +47,9 @@ double contact_pressure(const Particles& particles, const StepStiffness& sums) {
 
 void measure_inertia(ControlState& state, const Particles& particles, const Cell& cell, double pressure) {
   constexpr double memory = 4;  // control intervals
-  state.strain_rate += (fitted_strain_rate(particles, cell) - state.strain_rate) / memory;
+  Mat3 rate = fitted_flow(particles).gradient;
+  if (cell.periodic) rate += cell.velocity_gradient;
+  state.strain_rate += (0.5 * (rate + rate.transpose()) - state.strain_rate) / memory;
   double mass = 0, volume = 0, diameter = 0;
   for (const Body& b : particles.body) {
     mass += 1 / b.inverse_mass;
@@ -47,8 +57,8 @@ void measure_inertia(ControlState& state, const Particles& particles, const Cell
     diameter += 2 * b.radius;
   }
   diameter /= double(particles.size());
-  const double rate = state.strain_rate.norm();
-  state.inertial_number = rate > 0 ? rate * diameter * std::sqrt(mass / volume / pressure) : 0;
+  const double size = state.strain_rate.norm();
+  state.inertial_number = size > 0 ? size * diameter * std::sqrt(mass / volume / pressure) : 0;
 }
 
 double controlled_step(const StepControl& control, const ControlState& state, double step) {

@@ -28,8 +28,16 @@ struct ControlState {
 /// Steps between two evaluations of the inertial number.
 inline constexpr std::uint64_t control_interval = 5;
 
-/// The symmetric velocity gradient that fits the particles' velocities best, with the flow of a deforming cell [1/s].
-Mat3 fitted_strain_rate(const Particles&, const Cell&);
+/// The uniform flow v = velocity + gradient (x - centre) that fits the particles' velocities best.
+struct UniformFlow {
+  Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero();  ///< [m], [m/s]
+  Mat3 gradient = Mat3::Zero();                         ///< [1/s]
+};
+UniformFlow fitted_flow(const Particles&);
+
+/// Leaves the uniform flow and a `share` of what the velocities differ from it.  A longer step brings masses that grow
+/// with its square; with a share of old over new step the vibration keeps its energy instead of growing with them.
+void calm(Particles&, double share);
 
 /// Pressure that the contacts carry, sum over the particles of force times radius over three times the volume of the
 /// spheres [Pa].

@@ -77,7 +77,7 @@ void read_integration(Section& root, Scene& scene, ScenePlaces& places) {
     section.quantity("largest_step", s.largest_step, dim::time, Range::positive(), Need::optional,
                      "the rule gives no longer step than this; with inertia_measure 1/1000 of the process if absent");
     section.quantity("smallest_step", s.smallest_step, dim::time, Range::positive(), Need::optional,
-                     "inertia_measure starts from this step and gives no shorter one; 1/200 of largest_step if absent");
+                     "inertia_measure starts from this step and gives no shorter one; 1/20 of largest_step if absent");
     section.quantity("inertia_measure", s.inertia_measure, dim::none, share, Need::optional,
                      "with equalised inertia: the inertial number, strain rate x mean diameter x root of (density that "
                      "moves / contact pressure), that the steps keep; the error of the density goes with its square");

@@ -38,9 +38,12 @@ def main():
         points.append((float(row["cpu_s"]), error, noise, row["rung"]))
 
     figure, axes = plt.subplots(figsize=(7.5, 5), constrained_layout=True)
-    lowest = 0.5 * min([floor or 1] + [max(error, 1e-6) for _, error, _, _ in points])
+    smallest = 1e-9  # what a logarithm can show of an error of nothing
+    points = [(time, max(error, smallest), noise, name) for time, error, noise, name in points]
+    lowest = 0.5 * min([error for _, error, _, _ in points] + ([floor] if floor > smallest else []))
     for time, error, noise, name in points:
-        axes.errorbar(time, error, yerr=[[min(2 * noise, error - lowest)], [2 * noise]], fmt="o", capsize=3)
+        below = error - max(error - 2 * noise, lowest)
+        axes.errorbar(time, error, yerr=[[below], [2 * noise]], fmt="o", capsize=3)
         axes.annotate(name, (time, error), textcoords="offset points", xytext=(6, 4), fontsize=8)
     front, best = [], float("inf")
     for time, error, _, _ in sorted(points):
@@ -48,8 +51,8 @@ def main():
             front.append((time, error))
             best = error
     axes.plot(*zip(*front), "-", color="0.6", zorder=0, label="Pareto front")
-    if floor:
-        axes.axhspan(lowest, floor, color="0.9", zorder=0, label="twice the standard error of the converged mean")
+    if floor > smallest:
+        axes.axhspan(lowest, floor, color="0.9", zorder=-1, label="twice the standard error of the converged mean")
         axes.plot(converged[0], floor, "k*", label=f"converged: {converged[1]}")
     for target in (1e-2, 3e-3, 1e-3):
         axes.axhline(target, color="0.8", linewidth=0.8, linestyle=":")

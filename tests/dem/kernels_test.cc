@@ -71,7 +71,7 @@ TEST(Kernels, EveryInstructionSetGivesTheSameBits) {
   ASSERT_STREQ(available_kernels().front().name, "baseline");
   for (const bool periodic : {true, false})
     for (const auto& variant : variants) {
-      Setup setup = periodic ? testing::periodic_packing(1) : testing::cylinder_packing(1);
+      auto setup = periodic ? testing::periodic_packing(1) : testing::cylinder_packing(1);
       variant.change(setup);
       std::vector<StateBits> ends;
       for (const auto& kernels : available_kernels()) {
@@ -86,7 +86,7 @@ TEST(Kernels, EveryInstructionSetGivesTheSameBits) {
 // 1000 particles are in several chunks, whose sums cross their borders.
 TEST(Kernels, ThreadsAndChunksGiveTheSameBits) {
   auto packing = [](int threads) {
-    Setup s = testing::common_setup(threads);
+    auto s = testing::common_setup(threads);
     testing::add_lattice(s, {10, 10, 10}, 4e-6, Vec3::Zero(), 1);
     s.container.shape = ContainerShape::periodic;
     s.cell.periodic = true;

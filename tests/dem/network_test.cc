@@ -4,11 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 #include "base/check.h"
 #include "dem/network/probes.h"
-#include "tests/support/law_driver.h"
 #include "tests/support/setups.h"
 
 namespace densify::dem {
@@ -126,34 +124,6 @@ TEST(Network, StepOfAMaxwellLattice) {
   expect_cubic(at(relaxation), closed_form(Lattice::face_centred, eta / 2, 0), 1e-9);
 }
 
-// frozen_step is what `update` with backward Euler makes of a linear spring, at any step: the force at no rate, and the
-// slope by the rate of a neck free of stress (whose growth then moves nothing).  Differences over 1e-3 of the rate that
-// would grow the neck by 1e-9 of itself.
-TEST(FrozenStep, AgainstUpdate) {
-  constexpr test::DriverPair pair{5e-6, 1e-3};
-  for (double xi : {0.0, 0.4}) {
-    SinteringSettings settings;
-    settings.damping_ratio = xi;
-    const double a = 0.5 * pair.radius, eta = 1e3;
-    const SinteringContact<LinearSpring> law{{{k_n}, 0}, settings, a * a * a * a / eta, 1.5, 2.8, 0.95, true, false};
-    for (double h : {1e-8, 1e-4, 1e-2, 1.0, 1e4})
-      for (auto phase : {NeckPhase::sintering, NeckPhase::bonded}) {
-        auto force = [&](double stored, double rate) {
-          NeckHistory neck{a, stored, 0, phase};
-          NormalInput in = test::driver_input(pair, -1e-7, rate * h, h, h);
-          return law.update(in, neck).total;
-        };
-        auto linear = [&](double stored) {
-          return frozen_step(law.linearise(test::driver_input(pair, -1e-7, 0, 0, h), {a, stored, 0, phase}), h);
-        };
-        EXPECT_NEAR(force(-3e-9, 0) / linear(-3e-9).force, 1, 1e-12) << h;
-        const double rate = 1e-9 * a * a / (2 * pair.radius * h);
-        EXPECT_NEAR((force(0, rate) - force(0, -rate)) / (2 * rate) / linear(0).coefficient, 1, 1e-6) << h;
-      }
-  }
-  EXPECT_EQ(frozen_step({std::numeric_limits<double>::infinity(), 0, 7, 3, 9}, 0.1).coefficient, 7);
-}
-
 /// A shaken crystal: a periodic network without symmetry.
 Network shaken_network(double& volume, std::vector<Vec3>* positions) {
   Setup s = bonded_setup(SinteringModel::viscoelastic);
@@ -180,7 +150,7 @@ TEST(NetworkOperator, SymmetricAndDefinite) {
   double v;
   const NetworkOperator k = operator_of(shaken_network(v, nullptr), 0.3);
   const Eigen::MatrixXd dense = k.assemble();
-  EXPECT_EQ((dense - dense.transpose()).cwiseAbs().maxCoeff(), 0);
+  EXPECT_LT((dense - dense.transpose()).cwiseAbs().maxCoeff() / dense.cwiseAbs().maxCoeff(), 1e-14);
   const Eigen::VectorXd x = Eigen::VectorXd::Random(k.rows());
   Eigen::VectorXd y;
   k.apply(x, y);
@@ -192,7 +162,7 @@ TEST(NetworkOperator, SymmetricAndDefinite) {
   EXPECT_EQ(k.count_soft_modes(1e-6), 3u);
 }
 
-// The relaxed answer against a dense solution of the same network with a rank-revealing decomposition; below the affine
+// The relaxed answer against a dense solution of the same network by its eigenvectors; below the affine
 // one in the sense of quadratic forms.
 TEST(Network, RelaxedAgainstDenseSolution) {
   double volume;
@@ -213,8 +183,13 @@ TEST(Network, RelaxedAgainstDenseSolution) {
       resultant.segment<3>(3 * e.i) += f;
       resultant.segment<3>(3 * e.j) -= f;
     }
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> dense(Eigen::MatrixXd(k.assemble()));
-    const Eigen::VectorXd x = dense.solve(resultant);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> dense(Eigen::MatrixXd(k.assemble()));
+    Eigen::VectorXd x = dense.eigenvectors().transpose() * resultant;
+    for (Eigen::Index q = 0; q < x.size(); ++q) {
+      const double stiffness = dense.eigenvalues()[q];
+      x[q] = stiffness > 1e-12 * dense.eigenvalues()[x.size() - 1] ? x[q] / stiffness : 0.0;
+    }
+    x = dense.eigenvectors() * x;
     double zz = 0;
     for (const auto& e : net.edges)
       zz += edge_force(e, x.segment<3>(3 * e.j) - x.segment<3>(3 * e.i))[2] * e.branch[2] / volume;

@@ -100,6 +100,22 @@ TEST(SceneMistakes, SmallestStepAboveTheLargest) {
             "scene.toml:40: integration.smallest_step: is above largest_step; lower it");
 }
 
+TEST(SceneMistakes, InertiaFreeWithFriction) {
+  EXPECT_EQ(message_of(kGood, {"integration.method=inertia_free"}),
+            "--set integration.method=inertia_free: \"inertia_free\" has no rotations, which [contact.friction] needs; "
+            "remove it, or use method = \"explicit\"");
+}
+
+TEST(SceneMistakes, InertiaFreeSettingsOfAnExplicitRun) {
+  EXPECT_EQ(mistake_added("inertia_free.force_tolerance = 0.01\n"),
+            "scene.toml:38: integration.inertia_free: belongs to method = \"inertia_free\"; remove it, or set method");
+}
+
+TEST(SceneMistakes, TangentialShareAboveOne) {
+  EXPECT_EQ(mistake_added("method = \"inertia_free\"\ninertia_free.tangential_share = 2\n"),
+            "scene.toml:39: integration.inertia_free.tangential_share: must be > 0 and <= 1, found 2");
+}
+
 TEST(SceneMistakes, LoadOnANegativeParticle) {
   EXPECT_EQ(mistake_added("[[load]]\nparticle = -1\nforce = [\"1 N\", \"0 N\", \"0 N\"]\n"),
             "scene.toml:39: load.1.particle: must be >= 0 and <= 4294967295, found -1");

@@ -71,7 +71,7 @@ refuses 'densify: --set integration.mass_scaling=heavy: ' 'integration.mass_scal
 sed 's/^mass_scaling = 1e17/fixed_step = "1 s"\n&/' lattice.toml >mistake.toml
 refuses 'densify: mistake.toml:46: integration.fixed_step: ' 'stability limit' -- run mistake.toml --quiet --out new
 refuses 'densify: mistake.toml:46: integration.fixed_step: ' 'stability limit' -- check mistake.toml
-refuses 'densify: --set integration.fixed_step=50 s: ' 'stability limit' -- \
+refuses 'densify: --set integration.fixed_step=50 s: ' '50 s is above the stability limit of 0.35' -- \
   run lattice.toml --quiet --set 'integration.fixed_step=50 s' --out new
 
 # The folder of the results.

@@ -41,9 +41,11 @@ TEST(PackingStability, LimitOfSpringsIsNeverAboveTheTrueOne) {
     for (double tangential : {0.0, 2.0 / 7, 1.0}) {
       const Simulation sim = make(kind, model(0, tangential, 0));
       const double ratio = sim.state().critical_step / undamped_limit(assemble(sim));
-      EXPECT_LE(ratio, 1) << int(kind) << " k_t " << tangential;
+      EXPECT_LE(ratio, 1 + 1e-9) << int(kind) << " k_t " << tangential;
       EXPECT_GE(ratio, tangential == 0 ? 0.8 : 0.49) << int(kind) << " k_t " << tangential;
-      if (kind == Body::face_centred && tangential == 0) EXPECT_NEAR(ratio, 1, 2e-3);  // spacing 0.999 d
+      if (kind == Body::face_centred && tangential == 0) {
+        EXPECT_NEAR(ratio, 1, 2e-3);
+      }
     }
 }
 
@@ -95,9 +97,10 @@ double growth(Body kind, const dem::ContactModel& contact, double step, int step
   return late / early;
 }
 
-// The program itself: at 0.99 of its limit the motion of a crystal stays as it is over 5000 steps, at 1.01 of the true
-// limit of the dense system it grows until contacts open, a thousand times its first amplitude.  (Crystals that normal
-// springs alone hold: BCC has floppy modes that buckle, whatever the step.)
+// The program itself: at 0.99 of its limit the kinetic energy of a crystal swings by no more than the leap-frog's own
+// 1/(1 - 0.99^2) over 5000 steps, at 1.01 of the true limit of the dense system it grows until contacts open, a
+// thousand times its first amplitude.  (Crystals that normal springs alone hold: BCC has floppy modes that buckle,
+// whatever the step.)
 TEST(PackingStability, CrystalsAtTheLimit) {
   struct Held {
     Body kind;
@@ -107,7 +110,7 @@ TEST(PackingStability, CrystalsAtTheLimit) {
        {Held{Body::face_centred, model(0, 0, 0)}, Held{Body::face_centred, model(0, 1, 0)},
         Held{Body::body_centred, model(0, 2.0 / 7, 0)}}) {
     const Simulation sim = make(kind, contact);
-    EXPECT_LT(growth(kind, contact, 0.99 * sim.state().critical_step, 5000), 2) << int(kind);
+    EXPECT_LT(growth(kind, contact, 0.99 * sim.state().critical_step, 5000), 1 / (1 - 0.99 * 0.99)) << int(kind);
     EXPECT_GT(growth(kind, contact, 1.01 * undamped_limit(assemble(sim)), 1000), 1e4) << int(kind);
   }
 }
