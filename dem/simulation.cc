@@ -233,18 +233,10 @@ void Simulation::rebuild_lists() {
   prune_near(0);
 }
 
-void Simulation::require_finite_positions() const {
-  for (std::size_t p = 0; p < state_.particles.size(); ++p)
-    if (!state_.particles.body[p].position.allFinite())
-      throw RunError("the position of particle " + std::to_string(state_.particles.id[p]) +
-                     " is no longer finite at process time " + seconds(state_.time) +
-                     "; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
-}
-
 void Simulation::keep_list_fresh() {
   const int threads = setup_.integration.threads;
   const double travel = pass_.near().travel(state_.particles, state_.cell, state_.expansion, threads);
-  if (std::isnan(travel)) require_finite_positions();
+  if (std::isnan(travel)) require_finite(state_);
   const bool first_necks =
       setup_.contact.sintering && state_.contacts.neck.empty() && state_.contacts.size() > 0 && table_.any_active();
   bool rebuilding = first_necks || state_.walls.age(state_.contacts.skin) >= 1;
@@ -252,7 +244,7 @@ void Simulation::keep_list_fresh() {
   // The list is rebuilt exactly when its own age says so, whatever was pruned since; travel only spares looking.
   if (!rebuilding && (prune || travel >= list_slack_)) {
     const double age = list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, threads);
-    if (std::isnan(age)) require_finite_positions();
+    if (std::isnan(age)) require_finite(state_);
     rebuilding = age >= 1;
     if (!rebuilding && prune) prune_near(age);
   }
@@ -284,6 +276,13 @@ void Simulation::compute_forces(Recording* record) {
       state_.particles.force[p] += real_mass(p) * setup_.integration.gravity;
 }
 
+GuardView Simulation::guard_view() {
+  double growth = 0;
+  if (state_.last_step > 0)
+    for (double e : expansion_step_) growth = std::max(growth, std::abs(e) / state_.last_step);
+  return {setup_, state_, table_, pass_.near(), pressure(), growth};
+}
+
 StepLimit Simulation::step_limit() {
   const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
   return critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact, state_.walls, punch,
@@ -292,8 +291,14 @@ StepLimit Simulation::step_limit() {
 
 void Simulation::require_stable_step() {
   const double fixed = setup_.integration.fixed_step;
-  if (std::isnan(fixed)) return;
   const StepLimit limit = step_limit();
+  constexpr double most_steps = 1e14;  // years, even of two spheres at a tenth of a microsecond a step
+  const double step = std::isnan(fixed) ? setup_.integration.step_safety * limit.critical : fixed;
+  const bool explicit_steps = setup_.integration.method != IntegrationMethod::inertia_free;
+  if (explicit_steps && !((setup_.schedule.end() - state_.time) / step < most_steps))
+    throw InputError("integration.mass_scaling: the process of " + seconds(setup_.schedule.end()) +
+                     " would take more than 1e14 steps of " + seconds(step) +
+                     "; use a larger mass_scaling, or a shorter process");
   if (fixed > limit.critical)
     throw InputError("integration.fixed_step: " + seconds(fixed) + " is above the stability limit of " +
                      seconds(limit.critical) + " (particle " + std::to_string(state_.particles.id[limit.particle]) +
@@ -309,6 +314,10 @@ double Simulation::choose_step() {
   if (state_.steps % interval == 0 || state_.stable_step == 0) {
     const StepLimit limit = step_limit();
     state_.critical_step = limit.critical;
+    if (settings.fixed_step > limit.critical && settings.guards.guarding == Guarding::on)
+      throw RunError("integration.fixed_step of " + seconds(settings.fixed_step) +
+                     " has come above the stability limit of " + seconds(limit.critical) + " (particle " +
+                     std::to_string(state_.particles.id[limit.particle]) + "); use a smaller one, or leave it out");
     state_.stable_step = settings.step_safety * limit.critical;
     if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
     if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
@@ -331,6 +340,7 @@ void Simulation::evaluate(Recording* record) {
   if (evaluated_) throw std::logic_error("Simulation::evaluate was called twice in one step");
   refresh();
   compute_forces(record);
+  guards_.look(guard_view());
   evaluated_ = true;
 }
 
@@ -351,6 +361,10 @@ void Simulation::drop_inertia() {
 
 double Simulation::leapfrog_step() {
   const double step = choose_step();
+  if (!(state_.time + step > state_.time))
+    throw RunError("the step of " + seconds(step) + " no longer moves the process time of " + seconds(state_.time) +
+                   " on; the contacts have become too stiff or the masses too small, try "
+                   "a larger mass_scaling");
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   if (state_.punch.mass > 0) {
     state_.punch.kick(state_.walls.normal_force()[*punch_wall_], pressure(), kick_step);
@@ -395,6 +409,7 @@ bool Simulation::all_at_equilibrium() const {
 
 void Simulation::restore(State state) {
   evaluated_ = refreshed_ = false;
+  guards_.forget();
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
   table_unsettled_ = true;

@@ -41,7 +41,8 @@ std::vector<Eigen::Vector3i> wrap_into_cell(Particles& particles, const Cell& ce
 }
 
 /// Keys under which pairs with a history will be found in the new list, sorted.
-std::vector<Kept> kept_histories(const ContactList& list, const std::vector<Eigen::Vector3i>& moved) {
+std::vector<Kept> kept_histories(const ContactList& list, const std::vector<Eigen::Vector3i>& moved,
+                                 const std::vector<std::uint32_t>& id) {
   std::vector<Kept> kept;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const bool necked = !list.neck.empty() && list.neck[k].phase != NeckPhase::loose;
@@ -51,8 +52,8 @@ std::vector<Kept> kept_histories(const ContactList& list, const std::vector<Eige
     if (!moved.empty()) {
       const Eigen::Vector3i n = ImageCode::unpack(image) + moved[list.j(k)] - moved[list.i(k)];
       if (n.cwiseAbs().maxCoeff() > 1)
-        throw RunError("a contact spans more than one period of the cell (particles " + std::to_string(list.i(k)) +
-                       " and " + std::to_string(list.j(k)) + "); use a larger cell");
+        throw RunError("a contact spans more than one period of the cell (particles " + std::to_string(id[list.i(k)]) +
+                       " and " + std::to_string(id[list.j(k)]) + "); use a larger cell");
       image = ImageCode::of(n[0], n[1], n[2]);
     }
     kept.push_back({key_of(list.i(k), list.j(k), image), std::uint32_t(k)});
@@ -68,7 +69,7 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
   if (particles.size() > ContactList::index_mask)
     throw InputError("powder: more than " + std::to_string(ContactList::index_mask) + " particles are not supported");
   const auto moved = cell.periodic ? wrap_into_cell(particles, cell) : std::vector<Eigen::Vector3i>{};
-  const auto kept = kept_histories(list, moved);
+  const auto kept = kept_histories(list, moved, particles.id);
   // From here on the old histories alone are needed; the other arrays are filled anew where they are.
   const auto old_tangential = std::move(list.tangential);
   const auto old_neck = std::move(list.neck);

@@ -156,6 +156,7 @@ struct SinteringContact {
       return settings.at_equilibrium == AtEquilibrium::viscous && phase == NeckPhase::bonded
                  ? before
                  : std::numeric_limits<double>::infinity();
+    if (theory >= settings.viscosity_before) return theory;  // where nothing diffuses it is infinite
     return (1 - share) * before + share * theory;
   }
 
