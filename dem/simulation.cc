@@ -310,7 +310,11 @@ double Simulation::choose_step() {
   // The viscosity of a young neck grows as a^4, by orders of magnitude in a few steps: its limit m/eta follows at once.
   const bool dashpots = setup_.contact.sintering && setup_.contact.sintering->model == SinteringModel::viscous &&
                         !state_.contacts.neck.empty() && std::isnan(settings.fixed_step);
-  const std::uint64_t interval = dashpots ? 1 : std::uint64_t(settings.limit_interval);
+  // A punch that strikes presses Hertz springs by a tenth of a radius within an interval, and stiffens them as much.
+  const double mean_radius = state_.contacts.skin / settings.skin;
+  constexpr double striking = 3e-3;  // of the mean radius in a step
+  const bool strikes = std::abs(state_.punch.velocity) * state_.last_step > striking * mean_radius;
+  const std::uint64_t interval = dashpots || strikes ? 1 : std::uint64_t(settings.limit_interval);
   if (state_.steps % interval == 0 || state_.stable_step == 0) {
     const StepLimit limit = step_limit();
     state_.critical_step = limit.critical;

@@ -271,7 +271,8 @@ void Guards::look_at_contacts(const GuardView& view) {
                          std::abs(wall.thermal_rate) * (wall.point.norm() + wall.radius);
     rate += std::abs(s.walls.normal_force()[w]) * speed;
     if (s.punch.mass > 0 && wall.name == "punch") {
-      if (looked_) work += view.pressure * s.punch.area * std::abs(wall.point[2] - punch_position_);
+      if (looked_)
+        work += std::max(view.pressure, pressure_) * s.punch.area * std::abs(wall.point[2] - punch_position_);
       punch_position_ = wall.point[2];
     }
   }
@@ -299,14 +300,16 @@ void Guards::look_at_contacts(const GuardView& view) {
 
   const bool flowing = s.cell.periodic && !s.cell.velocity_gradient.isZero(0);
   const bool driven = flowing || !loads.empty() || sums.reserve > 0 || (view.pressure > 0 && s.punch.mass > 0);
-  if (looked_ && driven && elastic + sums.reserve > 0) {
-    const double ratio = kinetic.before / (elastic + sums.reserve);
-    if (ratio > view.setup.integration.guards.quasi_static_ratio) not_quasi_static_ += interval;
-    if (ratio > largest_ratio_) largest_ratio_ = ratio, time_of_largest_ratio_ = s.time;
+  if (looked_ && driven) {
+    const double motion = kinetic.before + kinetic.punch, springs = elastic + sums.reserve;
+    if (motion > view.setup.integration.guards.quasi_static_ratio * springs) not_quasi_static_ += interval;
+    if (springs > 0 && motion / springs > largest_ratio_)
+      largest_ratio_ = motion / springs, time_of_largest_ratio_ = s.time;
   }
   looked_ = true;
   time_ = s.time;
   supply_rate_ = rate;
+  pressure_ = view.pressure;
 }
 
 }  // namespace densify::dem

@@ -67,6 +67,7 @@ class Guards {
   double time_ = 0;            // [s]
   double budget_ = 0;          // mechanical energy that there can be [J]
   double supply_rate_ = 0;     // [W]
+  double pressure_ = 0;        // [Pa]
   double punch_position_ = 0;  // [m]
   std::vector<Vec3> loaded_;   // positions of the particles under a load [m]
 

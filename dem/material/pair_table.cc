@@ -60,6 +60,11 @@ void PairTable::update(double temperature, double time) {
       p.cap = 8 * std::pow(std::sin(0.25 * f.dihedral_angle), 2);  // 4 (1 - cos(Psi/2)) for small Psi, too
       p.sine = std::sin(0.5 * f.dihedral_angle);
       p.active = temperature >= f.activation_temperature;
+      if (p.active && p.mobility_factor == 0 && model_.sintering->model == SinteringModel::viscous)
+        throw RunError("nothing diffuses between \"" + materials_[a].name + "\" and \"" + materials_[b].name +
+                       "\" at " + std::to_string(temperature) +
+                       " K, so that viscous contacts are rigid; raise activation_temperature, or use model = "
+                       "\"viscoelastic\"");
       double& since = active_since_[index(a, b)];
       if (!p.active)
         since = unset;

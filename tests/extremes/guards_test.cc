@@ -31,7 +31,7 @@ TEST(Guard, NonFinite) {
   run_at_most(sim, 10);
   auto& particles = sim.mutable_state().particles;
   particles.body[place(particles, 5)].velocity[1] = dem::unset;
-  EXPECT_STOPS(run_at_most(sim, 33), "particle 5 is no longer finite", "step_safety");
+  EXPECT_STOPS(run_at_most(sim, 33), "is no longer finite", "step_safety");
 }
 
 // A force that overflows when it is squared is as good as infinite; what the particle touches is named.
@@ -51,7 +51,7 @@ TEST(Guard, TooDeep) {
   s.loads = {{0, Vec3(0, 0, force), 5e-5}, {1, Vec3(0, 0, -force), 5e-5}};
   Simulation deep(s);
   EXPECT_STOPS(run_at_most(deep, 100000), "particles 0 and 1 have gone too far into each other",
-               "overlap 1.5 of the smaller radius, at most 1.5");
+               "of the smaller radius, at most 1.5");
   s.integration.guards.largest_overlap = 1.7;
   Simulation allowed(s);
   run_at_most(allowed, 20000);
@@ -65,6 +65,7 @@ TEST(Guard, Escaped) {
   s.container.punch = false;
   s.container.size = Vec3::Constant(10 * radius);
   s.integration.skin = 10;
+  s.integration.step_safety = 0.05;
   const double mass = 8920 * 4.0 / 3 * M_PI * std::pow(radius, 3);
   add_sphere(s.particles, Vec3(5, 5, 1.01) * radius, radius, Vec3(0, 0, -1.5 * radius * std::sqrt(1e5 / mass)));
   Simulation sim(s);
@@ -143,10 +144,11 @@ TEST(Guard, QuasiStaticCriterion) {
     Simulation sim(s);
     while (!sim.finished()) sim.advance();
     const double share = sim.guards().not_quasi_static() / 0.01;
-    if (fine)
+    if (fine) {
       EXPECT_LT(share, 0.02);
-    else
+    } else {
       EXPECT_GT(share, 0.5);
+    }
   }
 }
 

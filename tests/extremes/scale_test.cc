@@ -40,10 +40,18 @@ TEST(MassFactor, SinteringIsRightOrSaidNotToBe) {
     const double error = approach(sim) / (2 * copper_radius) / 0.0476722471 - 1;
     const double share = sim.guards().not_quasi_static() / 1000;
     table.row(factor, error, share, sim.guards().largest_ratio());
-    if (power <= 14) EXPECT_LT(std::abs(error), 2e-4) << factor;
-    if (power <= 14) EXPECT_LT(share, 0.02) << factor;
-    if (std::abs(error) > 0.02) EXPECT_GT(share, 0.02) << factor << ": silently wrong by " << error;
-    if (power == 20) EXPECT_GT(share, 0.5);
+    if (power <= 14) {
+      EXPECT_LT(std::abs(error), 2e-4) << factor;
+    }
+    if (power <= 14) {
+      EXPECT_LT(share, 0.02) << factor;
+    }
+    if (std::abs(error) > 0.02) {
+      EXPECT_GT(share, 0.02) << factor << ": silently wrong by " << error;
+    }
+    if (power == 20) {
+      EXPECT_GT(share, 0.5);
+    }
   }
 }
 
@@ -71,7 +79,7 @@ TEST(Radius, HertzFromTenNanometresToAMillimetre) {
     contact.damping_ratio = 0.5;
     const double modulus = 1e11 / (2 * (1 - 0.09));  // E*
     const double force = 1e-3 * modulus * radius * radius;
-    auto s = empty_setup(copper(), contact, hold(4e-3 * radius, 300, 0));  // 100 periods of 40 us m^-1 r
+    auto s = empty_setup(copper(), contact, hold(0.5 * radius, 300, 0));  // 50 periods of 10 ms a metre
     for (int i = 0; i < 2; ++i) add_sphere(s.particles, Vec3(0, 0, i * 1.999 * radius), radius, Vec3::Zero());
     s.loads = {{0, Vec3(0, 0, force), 0}, {1, Vec3(0, 0, -force), 0}};
     Simulation sim(s);
@@ -90,13 +98,13 @@ TEST(Radius, PackingScalesToTheLastBit) {
   const std::vector<std::uint8_t> materials(diameters.size(), 0);
   dem::CompactionGoal goal{{}, 0.5, 0, 0.05, 3};
   goal.container.shape = dem::ContainerShape::cylinder;
-  goal.container.size = Vec3(5, 5, 0);
+  goal.container.size = Vec3(8, 8, 0);
   const auto one = dem::compact(diameters, materials, goal, 1, {});
   for (int power : {-27, 10}) {  // 7.5 nm and 1 km
     const double scale = std::ldexp(1.0, power);
     auto scaled = diameters;
     for (double& d : scaled) d *= scale;
-    goal.container.size = scale * Vec3(5, 5, 0);
+    goal.container.size = scale * Vec3(8, 8, 0);
     const auto other = dem::compact(scaled, materials, goal, 1, {});
     for (std::size_t p = 0; p < diameters.size(); ++p)
       EXPECT_EQ(other.particles.body[p].position, Vec3(scale * one.particles.body[p].position)) << power;
@@ -157,7 +165,6 @@ TEST(SizeRatio, AHundredInOneBox) {
   const double first = energy();
   std::size_t most = 0;
   for (int n = 0; n < 20; ++n) {
-    run_at_most(sim, 500);
     std::size_t touching = 0;
     const auto& p = sim.state().particles;
     for (std::size_t i = 0; i < p.size(); ++i)
@@ -169,6 +176,7 @@ TEST(SizeRatio, AHundredInOneBox) {
     EXPECT_EQ(sim.contacts_now(), touching);
     most = std::max(most, touching);
     EXPECT_NEAR(energy() / first, 1, 2e-3);
+    run_at_most(sim, 500);
   }
   EXPECT_GT(most, 50);
   EXPECT_LT((momentum(sim.state().particles) - before).norm(), 1e-11 * parts);
