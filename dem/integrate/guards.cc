@@ -262,7 +262,8 @@ void Guards::look_at_contacts(const GuardView& view) {
   const KineticEnergy kinetic = kinetic_energy(view);
   const double walls = s.walls.elastic_energy(s.particles, view.table, view.setup.contact);
 
-  // Work since the last look, from above: rates by the larger of both ends, what has moved by its way.
+  // Work since the last look, from above: rates by the larger of both ends; forces that are given by the way between
+  // them, or by the present velocity when that says more, for what swings takes and gives many times.
   const double interval = looked_ ? s.time - time_ : 0.0;
   double rate = sums.supply_rate + kinetic.gravity_rate, work = 0;
   for (std::size_t w = 0; w < s.walls.wall.size(); ++w) {
@@ -271,15 +272,16 @@ void Guards::look_at_contacts(const GuardView& view) {
                          std::abs(wall.thermal_rate) * (wall.point.norm() + wall.radius);
     rate += std::abs(s.walls.normal_force()[w]) * speed;
     if (s.punch.mass > 0 && wall.name == "punch") {
-      if (looked_)
-        work += std::max(view.pressure, pressure_) * s.punch.area * std::abs(wall.point[2] - punch_position_);
+      const double way = std::max(std::abs(wall.point[2] - punch_position_), std::abs(s.punch.velocity) * interval);
+      if (looked_) work += std::max(view.pressure, pressure_) * s.punch.area * way;
       punch_position_ = wall.point[2];
     }
   }
   const auto& loads = view.setup.loads;
   for (std::size_t l = 0; l < loads.size(); ++l) {
-    const Vec3& x = s.particles.body[loads[l].particle].position;
-    if (looked_) work += loads[l].force.norm() * (x - loaded_[l]).norm();
+    const Body& b = s.particles.body[loads[l].particle];
+    if (looked_)
+      work += loads[l].force.norm() * std::max((b.position - loaded_[l]).norm(), b.velocity.norm() * interval);
   }
   loaded_.clear();
   for (const auto& load : loads) loaded_.push_back(s.particles.body[load.particle].position);

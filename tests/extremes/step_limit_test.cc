@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/extremes/stopped.h"
+#include "tests/extremes/table.h"
 #include "tests/support/contact_system.h"
 
 namespace densify::test {
@@ -15,6 +16,9 @@ constexpr Model all_models[] = {Model::linear,  Model::hertz,       Model::frict
                                 Model::maxwell, Model::trapezoidal, Model::viscous};
 enum class Body { pair, chain, crystal, packing };
 constexpr Body all_bodies[] = {Body::pair, Body::chain, Body::crystal, Body::packing};
+
+constexpr const char* model_names[] = {"Linear", "Hertz", "Friction", "Bond", "Maxwell", "Trapezoidal", "Viscous"};
+constexpr const char* body_names[] = {"Pair", "Chain", "Crystal", "Packing"};
 
 bool has_neck(Model m) {
   return m != Model::linear && m != Model::hertz && m != Model::friction;
@@ -145,7 +149,7 @@ TEST_P(AtTheLimit, StableBelowRefusedAbove) {
   Simulation sim = make(model, s);
   sim.evaluate(nullptr);
   const double own = sim.step_limit().critical, whole = true_limit(model, sim);
-  RecordProperty("own_over_true_limit", std::to_string(own / whole));
+  Table("step_limit", "model,body,own_over_true").row(model_names[int(model)], body_names[int(kind)], own / whole);
   EXPECT_LE(own, whole * (1 + 1e-3));  // by what a contact under load changes while it swings
   EXPECT_GE(own, (model == Model::viscous ? 0.45 * 0.45 : 0.45) * whole);
   EXPECT_LT(growth(model, s, 0.99 * own, dem::Guarding::on, 3000), 60);
@@ -154,9 +158,7 @@ TEST_P(AtTheLimit, StableBelowRefusedAbove) {
 }
 
 std::string name_of(const testing::TestParamInfo<std::tuple<Model, Body>>& info) {
-  const char* const models[] = {"Linear", "Hertz", "Friction", "Bond", "Maxwell", "Trapezoidal", "Viscous"};
-  const char* const bodies[] = {"Pair", "Chain", "Crystal", "Packing"};
-  return std::string(models[int(std::get<0>(info.param))]) + bodies[int(std::get<1>(info.param))];
+  return std::string(model_names[int(std::get<0>(info.param))]) + body_names[int(std::get<1>(info.param))];
 }
 
 INSTANTIATE_TEST_SUITE_P(StepLimit, AtTheLimit,
