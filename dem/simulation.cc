@@ -327,10 +327,17 @@ double Simulation::choose_step() {
     if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
     if (state_.punch.mass > 0) state_.punch.tune(limit.punch_stiffness, setup_.container.punch_settings.damping_ratio);
   }
+  double step = state_.stable_step;
+  if (state_.punch.mass > 0 && std::isnan(settings.fixed_step)) {
+    // A jump of the pressure must not throw the punch into the powder between two looks at its contacts.
+    constexpr double leap = 0.01;  // of the mean radius, from rest in a step
+    const double force = state_.walls.normal_force()[*punch_wall_] - pressure() * state_.punch.area;
+    step = std::min(step, std::sqrt(leap * mean_radius * state_.punch.mass / std::abs(force)));
+  }
   // Breakpoints of the schedule are met exactly; the last two steps before one share the way.
   const double left = setup_.schedule.next_breakpoint(state_.time) - state_.time;
-  if (left <= state_.stable_step) return left;
-  return left < 2 * state_.stable_step ? 0.5 * left : state_.stable_step;
+  if (left <= step) return left;
+  return left < 2 * step ? 0.5 * left : step;
 }
 
 void Simulation::refresh() {
