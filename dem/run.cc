@@ -46,7 +46,7 @@ std::string text(const char* format, double a) {
 }
 
 /// Share of the process in which a specimen may move more than a quasi-static one does.
-constexpr double tolerated_motion = 0.02;
+constexpr double tolerated_motion = 0.05;
 
 struct Paths {
   explicit Paths(const fs::path& folder)

@@ -1,7 +1,7 @@
 """Draws the figures of doc/stability.md from the tables that the tests of the extremes write.
 
     mkdir tables; DENSIFY_STABILITY_TABLES=$PWD/tables build/release/bin/test_extremes
-    /usr/bin/python3 doc/figures/stability.py tables doc/figures
+    /usr/bin/python3 examples/tools/plot_stability.py tables doc/pictures
 """
 
 import csv
