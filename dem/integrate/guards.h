@@ -1,7 +1,6 @@
 #pragma once
 // Guards: what ends a run that is no longer sound, and what warns of one that is no longer quasi-static.  Always on,
-// and looked at every few dozen steps, so that they cost less than a hundredth of a step.  They read the state and
-// never change it.
+// looked at every few dozen steps.  They read the state and never change it.
 
 #include <array>
 #include <cstdint>
