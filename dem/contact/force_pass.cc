@@ -103,7 +103,7 @@ double step_stiffness(const Bucket<Law>& c, const NormalInput& in, std::uint32_t
 
 /// The near pair at `index`.  Uniform features (periodic or deforming cell, thermal growth) are branches; law, friction
 /// and sink are not.
-template <bool with_friction, class Law, class Sink>
+template <bool with_friction, bool with_stiffness, class Law, class Sink>
 inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
   const std::uint32_t place = c.near[index], i = c.first[place], coded = c.second[place];
   const std::uint32_t j = coded & ContactList::index_mask;
@@ -117,7 +117,8 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
   if (d2 >= reach * reach && !necked) {
     if constexpr (with_friction) c.tangential[place].setZero();
     sink.skip(pair);
-    if (c.stiffness_shares) c.stiffness_shares[index] = {Vec3::Zero(), 0, 0, 0};
+    if constexpr (with_stiffness)
+      if (c.stiffness_shares) c.stiffness_shares[index] = {Vec3::Zero(), 0, 0, 0};
     return;
   }
   const double d = std::sqrt(d2);
@@ -169,7 +170,7 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
       slip.setZero();
     }
   }
-  if (c.next_step > 0) {
+  if constexpr (with_stiffness) {
     const double along = step_stiffness(c, in, place);
     double across = 0;
     if constexpr (with_friction)
@@ -209,9 +210,9 @@ inline void visit(const Bucket<Law>& c, const Sink& sink, std::size_t index) {
 }
 
 /// Copies bucket and sink so that nothing that the loop stores can change them.
-template <bool with_friction, class Law, class Sink>
+template <bool with_friction, bool with_stiffness, class Law, class Sink>
 [[gnu::flatten]] void visit_all(const Bucket<Law> bucket, const Sink sink, std::size_t begin, std::size_t end) {
-  for (std::size_t k = begin; k < end; ++k) visit<with_friction>(bucket, sink, k);
+  for (std::size_t k = begin; k < end; ++k) visit<with_friction, with_stiffness>(bucket, sink, k);
 }
 
 }  // namespace
@@ -324,10 +325,11 @@ void ForcePass::run_bucket(const Law& law, std::size_t number, Particles& partic
   const std::size_t count = near_.bucket_end()[number] - first;
   auto with = [&](const auto& sink, int threads) {
     in_parts(count, threads, [&](std::size_t begin, std::size_t end) {
+      const std::size_t from = first + begin, to = first + end;
       if (model_.friction)
-        visit_all<true>(bucket, sink, first + begin, first + end);
+        stiffness ? visit_all<true, true>(bucket, sink, from, to) : visit_all<true, false>(bucket, sink, from, to);
       else
-        visit_all<false>(bucket, sink, first + begin, first + end);
+        stiffness ? visit_all<false, true>(bucket, sink, from, to) : visit_all<false, false>(bucket, sink, from, to);
     });
   };
   if (record)
