@@ -9,6 +9,7 @@
 
 #include "base/data_path.h"
 #include "dem/io/particle_import.h"
+#include "dem/measure/measures.h"
 
 namespace densify::app {
 
@@ -53,10 +54,17 @@ double seconds_now(int threads) {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-double seconds_of(dem::Simulation& simulation, std::uint64_t steps, int threads) {
-  const double start = seconds_now(threads);
-  for (std::uint64_t s = 0; s < steps; ++s) simulation.advance();
-  return seconds_now(threads) - start;
+double seconds_of(dem::Simulation& simulation, std::uint64_t steps, const BenchJob& job) {
+  constexpr std::uint64_t output_interval = 100;
+  const double start = seconds_now(job.threads);
+  dem::Recording recording;
+  for (std::uint64_t s = 0; s < steps; ++s) {
+    const bool row = job.feature == BenchFeature::output && s % output_interval == 0;
+    simulation.evaluate(row ? &recording : nullptr);
+    if (row) dem::measure(simulation, recording);
+    simulation.move();
+  }
+  return seconds_now(job.threads) - start;
 }
 
 std::size_t peak_resident() {
@@ -69,6 +77,30 @@ std::string name_of(BenchCase c) {
   return std::string(1, c == BenchCase::A ? 'A' : c == BenchCase::B ? 'B' : 'S');
 }
 
+void add_feature(dem::Setup& setup, BenchFeature feature) {
+  using namespace dem;
+  if (feature == BenchFeature::heating) {
+    setup.materials[0].thermal_expansion = 1e-5;
+    setup.schedule = Schedule(1000, 0, {{"bench", 1e6, 1100, 0}});
+  }
+  if (feature == BenchFeature::hertz) {
+    // The stiffness k_n at an overlap of 0.01 of the reduced radius: k_n = 3/2 x 4/3 E* R sqrt(0.01), R = 1/4.
+    setup.contact.elasticity = Elasticity::hertz;
+    const double reduced_modulus = contact_stiffness / (2 * 0.25 * 0.1);
+    setup.materials[0].youngs_modulus = PiecewiseLinear({{0.0, 2 * reduced_modulus}, {2000.0, 2 * reduced_modulus}});
+    setup.materials[0].poissons_ratio = PiecewiseLinear({{0.0, 0.0}, {2000.0, 0.0}});
+  }
+  if (feature == BenchFeature::walls) {
+    const double margin = 0.5;  // a radius, so that the particles at the faces touch the walls
+    for (auto& b : setup.particles.body) b.position += Vec3::Constant(margin) - setup.cell.origin;
+    setup.container.shape = ContainerShape::box;
+    setup.container.size = setup.cell.h.diagonal() + Vec3::Constant(2 * margin);
+    setup.container.punch = false;
+    setup.cell = Cell{};
+  }
+  if (feature == BenchFeature::shear) setup.cell.velocity_gradient(0, 1) = 1e-3;
+}
+
 }  // namespace
 
 dem::Setup bench_setup(const BenchJob& job, const std::filesystem::path& packing_file) {
@@ -78,21 +110,28 @@ dem::Setup bench_setup(const BenchJob& job, const std::filesystem::path& packing
   setup.cell = imported.box.value();
   setup.container.shape = ContainerShape::periodic;
   reject_overlaps(imported, setup.cell, largest_overlap);
-  setup.particles.body.reserve(imported.size());
-  setup.particles.reference_radius.reserve(imported.size());
-  setup.particles.material.reserve(imported.size());
-  setup.particles.id.reserve(imported.size());
-  for (std::size_t p = 0; p < imported.size(); ++p) {
-    setup.particles.body.push_back({setup.cell.wrap(imported.position[p]), imported.radius[p], Vec3::Zero(), 1});
-    setup.particles.reference_radius.push_back(imported.radius[p]);
-    setup.particles.material.push_back(0);
-    setup.particles.id.push_back(std::uint32_t(p));
-  }
+  const Mat3 h = setup.cell.h;
+  setup.cell.h = h * job.copies.cast<double>().asDiagonal();
+  const std::size_t particles = imported.size() * std::size_t(job.copies.prod());
+  setup.particles.body.reserve(particles);
+  setup.particles.reference_radius.reserve(particles);
+  setup.particles.material.reserve(particles);
+  setup.particles.id.reserve(particles);
+  for (int x = 0; x < job.copies[0]; ++x)
+    for (int y = 0; y < job.copies[1]; ++y)
+      for (int z = 0; z < job.copies[2]; ++z)
+        for (std::size_t p = 0; p < imported.size(); ++p) {
+          const Vec3 at = imported.position[p] + h * Vec3(x, y, z);
+          setup.particles.id.push_back(std::uint32_t(setup.particles.body.size()));
+          setup.particles.body.push_back({setup.cell.wrap(at), imported.radius[p], Vec3::Zero(), 1});
+          setup.particles.reference_radius.push_back(imported.radius[p]);
+          setup.particles.material.push_back(0);
+        }
 
   setup.contact.elasticity = Elasticity::linear;
   setup.contact.normal_stiffness = contact_stiffness;
   setup.contact.damping_ratio = damping_ratio(normal_damping_rate, contact_stiffness);
-  if (job.benchmark == BenchCase::B) {
+  if (job.benchmark == BenchCase::B || job.feature == BenchFeature::friction) {
     FrictionModel friction;
     friction.coefficient = friction.wall_coefficient = 0.3;
     friction.tangential_stiffness_ratio = 0.2857;
@@ -100,7 +139,7 @@ dem::Setup bench_setup(const BenchJob& job, const std::filesystem::path& packing
         damping_ratio(tangential_damping_rate, friction.tangential_stiffness_ratio * contact_stiffness);
     setup.contact.friction = friction;
   }
-  if (job.benchmark == BenchCase::S) {
+  if (job.benchmark == BenchCase::S || job.feature == BenchFeature::sintering) {
     setup.contact.sintering = SinteringSettings{};
     setup.contact.sintering->relaxation_time = 0;
   }
@@ -109,6 +148,7 @@ dem::Setup bench_setup(const BenchJob& job, const std::filesystem::path& packing
   setup.integration.fixed_step = smallest < 0.4 ? 8e-5 : 3.2e-4;
   setup.integration.skin = 0.2;  // a tenth of the mean diameter
   setup.integration.threads = job.threads;
+  add_feature(setup, job.feature);
   return setup;
 }
 
@@ -120,12 +160,12 @@ BenchResult run_job(const BenchJob& job) {
   result.particles = simulation.state().particles.size();
   result.contacts_at_start = simulation.contacts_now();
 
-  const double warm_up = seconds_of(simulation, warm_up_steps, job.threads) / double(warm_up_steps);
+  const double warm_up = seconds_of(simulation, warm_up_steps, job) / double(warm_up_steps);
   const std::uint64_t steps = job.steps > 0 ? job.steps : std::uint64_t(seconds_of_repeat / warm_up) + 1;
   std::vector<double> seconds;
   double contacts = double(result.contacts_at_start);
   for (int r = 0; r < repeats; ++r) {
-    seconds.push_back(seconds_of(simulation, steps, job.threads));
+    seconds.push_back(seconds_of(simulation, steps, job));
     contacts += double(simulation.contacts_now());
   }
   contacts /= repeats + 1;
@@ -139,7 +179,9 @@ BenchResult run_job(const BenchJob& job) {
   result.ns_per_contact_step = 1e9 * median / double(steps) / contacts;
   result.bytes_per_particle = double(simulation.bytes()) / double(result.particles);
   result.peak_resident = peak_resident();
-  result.force_check = force_deviation(simulation);
+  constexpr std::size_t largest_checked = 30000;  // the double loop grows with the square of the number
+  if (job.feature == BenchFeature::none && result.particles <= largest_checked)
+    result.force_check = force_deviation(simulation);
   result.list_builds = simulation.state().contacts.builds;
   return result;
 }

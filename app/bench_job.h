@@ -11,11 +11,25 @@ namespace densify::app {
 /// (Maxwell) at constant temperature.
 enum class BenchCase : std::uint8_t { A, B, S };
 
+/// What a job has beside case A, one thing at a time.
+enum class BenchFeature : std::uint8_t {
+  none,
+  friction,   ///< case B
+  heating,    ///< thermal expansion while the temperature changes in every step
+  sintering,  ///< case S
+  hertz,
+  walls,   ///< a box around the packing in place of the periodic cell
+  output,  ///< a measured row of results every 100 steps
+  shear    ///< a periodic cell that deforms
+};
+
 struct BenchJob {
   std::string packing;  ///< name of a file of benchmark/packings
   BenchCase benchmark = BenchCase::A;
   int threads = 1;
   std::uint64_t steps = 0;  ///< of one repeat; 0: as many as take about half a second
+  BenchFeature feature = BenchFeature::none;
+  Eigen::Vector3i copies{1, 1, 1};  ///< of the periodic packing along each edge
 };
 
 /// Times of one thread are its processor time, of several the wall's; medians over the repeats.
@@ -31,7 +45,8 @@ struct BenchResult {
   double bytes_per_particle = 0;    ///< state and scratch of the simulation
   std::size_t peak_resident = 0;    ///< of the process so far [B]
   std::size_t list_builds = 0;
-  double force_check = 0;  ///< largest deviation from the plain double loop, see force_deviation
+  double force_check = dem::unset;  ///< largest deviation from the plain double loop, see force_deviation; unset where
+                                    ///< it would take minutes or does not know the feature
 };
 
 /// What a job simulates, in the reduced units of the packings (mean diameter 1, density 1, k_n = 1e5).

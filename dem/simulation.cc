@@ -36,7 +36,18 @@ std::vector<Wall> make_walls(const Container& c) {
   return walls;
 }
 
-/// Order of the particles along a grid of about one large particle a cell, so that neighbours are near in memory.
+/// The lowest 21 bits of x, each followed by two zeros.
+std::uint64_t spread(std::uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffff;
+  x = (x | x << 16) & 0x1f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+/// Order of the particles along a Morton curve through cells of about one particle, so that neighbours are near in
+/// memory and a range of particles is compact in space.
 std::vector<std::uint32_t> spatial_order(const Particles& particles) {
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   double mean = 0;
@@ -46,10 +57,10 @@ std::vector<std::uint32_t> spatial_order(const Particles& particles) {
     mean += particles.reference_radius[p] / double(particles.size());
   }
   const Vec3 span = (high - low).cwiseMax(mean);
-  const double edge = std::max(4 * mean, span.maxCoeff() / 1000);
+  const double edge = std::max(2 * mean, span.maxCoeff() / 1e6);
   auto cell_of = [&](std::uint32_t p) {
     const Vec3 s = (particles.body[p].position - low) / edge;
-    return (std::uint64_t(s[2]) << 40) | (std::uint64_t(s[1]) << 20) | std::uint64_t(s[0]);
+    return spread(std::uint64_t(s[2])) << 2 | spread(std::uint64_t(s[1])) << 1 | spread(std::uint64_t(s[0]));
   };
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(particles.size());
   for (std::uint32_t p = 0; p < keyed.size(); ++p) keyed[p] = {cell_of(p), p};
@@ -227,6 +238,8 @@ void Simulation::set_environment() {
     }
     if (state_.punch.mass > 0) state_.punch.area = punch_area();
   }
+  for (const double growth : expansion_step_)
+    may_have_travelled_ += 1.1 * std::abs(growth) * 2 * state_.contacts.largest_radius;
   state_.temperature = t;
 }
 
@@ -254,28 +267,42 @@ void Simulation::require_finite_positions() const {
 }
 
 void Simulation::keep_list_fresh() {
-  const int threads = setup_.integration.threads;
-  const double travel = pass_.near().travel(state_.particles, state_.cell, state_.expansion, threads);
-  if (std::isnan(travel)) require_finite_positions();
   const bool first_necks =
       setup_.contact.sintering && state_.contacts.neck.empty() && state_.contacts.size() > 0 && table_.any_active();
   bool rebuilding = first_necks || state_.walls.age(state_.contacts.skin) >= 1;
-  const bool prune = travel >= pass_.near().skin();
-  // The list is rebuilt exactly when its own age says so, whatever was pruned since; travel only spares looking.
-  if (!rebuilding && (prune || travel >= list_slack_)) {
-    const double age = list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, threads);
+  // The list is rebuilt exactly when its own age says so, whatever was pruned since; the bound only spares looking.
+  const bool prune = pass_.near().empty() || !(may_have_travelled_ < pass_.near().skin());
+  if (!rebuilding && (prune || !(may_have_travelled_ < list_slack_))) {
+    const double age =
+        list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, setup_.integration.threads);
     if (std::isnan(age)) require_finite_positions();
     rebuilding = age >= 1;
-    if (!rebuilding && prune) prune_near(age);
+    if (!rebuilding && prune)
+      prune_near(age);
+    else if (!rebuilding)
+      set_list_slack(age);
   }
   if (rebuilding) rebuild_lists();
 }
 
-void Simulation::prune_near(double list_age) {
-  pass_.near().prune(state_.contacts, state_.particles, state_.cell, state_.expansion);
-  pass_.near_changed(state_.contacts, state_.particles.size());
+/// Called after a move in which no particle was faster than `fastest` against the flow of its cell [m/s, s].
+void Simulation::note_travel(double fastest, double step) {
+  const double flow = state_.cell.periodic ? state_.cell.velocity_gradient.norm() : 0.0;
+  const double reach = 2 * state_.contacts.largest_radius + state_.contacts.skin;
+  const double above = flow > 0 ? 1.5 : 1 + 1e-9;  // strains between two prunings multiply
+  may_have_travelled_ += above * step * (2 * fastest + flow * reach);
+}
+
+void Simulation::set_list_slack(double list_age) {
   constexpr double rounding = 1e-9;  // of the sum of two distances
-  list_slack_ = (1 - list_age - rounding) * state_.contacts.skin;
+  list_slack_ = may_have_travelled_ + (1 - list_age - rounding) * state_.contacts.skin;
+}
+
+void Simulation::prune_near(double list_age) {
+  pass_.near().prune(state_.contacts, state_.particles, state_.cell);
+  pass_.near_changed(state_.contacts, state_.particles.size());
+  may_have_travelled_ = 0;
+  set_list_slack(list_age);
 }
 
 void Simulation::compute_forces(Recording* record) {
@@ -419,7 +446,9 @@ double Simulation::leapfrog_step() {
     if (equalised()) carry(state_.particles, column(), state_.punch.velocity - before, setup_.integration.threads);
     state_.walls.wall[*punch_wall_].velocity = Vec3(0, 0, state_.punch.velocity);
   }
-  leapfrog(state_.particles, state_.cell, {kick_step, step}, setup_.integration.drag, setup_.integration.threads);
+  const double fastest =
+      leapfrog(state_.particles, state_.cell, {kick_step, step}, setup_.integration.drag, setup_.integration.threads);
+  note_travel(fastest, step);
   for (auto& w : state_.walls.wall) {
     w.point += step * w.velocity;
     w.radius += step * w.radius_rate;
@@ -436,6 +465,7 @@ void Simulation::move() {
     const double longest = setup_.integration.largest_step;
     step = inertia_free_.move(state_, setup_, table_, state_.punch.mass > 0 ? punch_wall_ : std::nullopt,
                               std::isnan(longest) ? setup_.schedule.end() : longest);
+    may_have_travelled_ = std::numeric_limits<double>::infinity();
   } else {
     step = leapfrog_step();
   }
@@ -464,6 +494,7 @@ void Simulation::restore(State state) {
   const double since_time = state_.time - state_.last_step;
   if (!std::isnan(state_.temperature)) table_.update(state_.temperature, since_time);
   pass_.list_changed(state_.contacts, state_.particles.size());
+  may_have_travelled_ = std::numeric_limits<double>::infinity();
 }
 
 std::size_t Simulation::contacts_now() const {

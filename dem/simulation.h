@@ -2,6 +2,7 @@
 // One RVE in time: the state, its environment, and the step.  No files, no clock, no global state: hundreds of these
 // live side by side in one process.
 
+#include <limits>
 #include <optional>
 
 #include "base/schedule.h"
@@ -127,7 +128,10 @@ class Simulation {
   const PairTable& table() const { return table_; }
   /// Replaces the state by a checkpoint's.
   void restore(State state);
-  State& mutable_state() { return state_; }
+  State& mutable_state() {
+    may_have_travelled_ = std::numeric_limits<double>::infinity();
+    return state_;
+  }
   void set_gravity(const Vec3& g) { setup_.integration.gravity = g; }
 
   double temperature() const { return setup_.schedule.temperature(state_.time); }
@@ -156,6 +160,8 @@ class Simulation {
   Column column() const;
   void rebuild_lists();
   void prune_near(double list_age);
+  void set_list_slack(double list_age);
+  void note_travel(double fastest, double step);
   void require_finite_positions() const;
 
   Setup setup_;
@@ -168,7 +174,8 @@ class Simulation {
   bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
   StepStiffness stiffness_;      // equalised inertia only: of the last pass
   StepControl control_;
-  double list_slack_ = 0;  // what may be travelled since the last pruning before the list can be too old [m]
+  // How far surfaces may have approached since the last pruning, from above, and what the list still allows [m].
+  double may_have_travelled_ = 0, list_slack_ = 0;
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
 };

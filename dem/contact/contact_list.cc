@@ -1,6 +1,7 @@
 #include "dem/contact/contact_list.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,6 +23,19 @@ CandidatePair pair_of(Key key) {
           std::uint8_t(key & 31)};
 }
 
+/// Sorts the pairs of one group of particles, ascending by (i, j), into rounds.
+void sort_into_rounds(std::span<const CandidatePair> pairs, std::vector<CandidatePair>& out) {
+  std::array<std::size_t, ContactList::group + 1> begin;  // of the pairs of each particle
+  std::size_t particles = 0, rounds = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if (k == 0 || pairs[k].i != pairs[k - 1].i) begin[particles++] = k;
+  begin[particles] = pairs.size();
+  for (std::size_t p = 0; p < particles; ++p) rounds = std::max(rounds, begin[p + 1] - begin[p]);
+  for (std::size_t round = 0; round < rounds; ++round)
+    for (std::size_t p = 0; p < particles; ++p)
+      if (begin[p] + round < begin[p + 1]) out.push_back(pairs[begin[p] + round]);
+}
+
 /// Where the history of a pair was before the rebuild.
 struct Kept {
   Key key;
@@ -41,7 +55,8 @@ std::vector<Eigen::Vector3i> wrap_into_cell(Particles& particles, const Cell& ce
 }
 
 /// Keys under which pairs with a history will be found in the new list, sorted.
-std::vector<Kept> kept_histories(const ContactList& list, const std::vector<Eigen::Vector3i>& moved) {
+std::vector<Kept> kept_histories(const ContactList& list, const std::vector<Eigen::Vector3i>& moved,
+                                 const std::vector<std::uint32_t>& id) {
   std::vector<Kept> kept;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const bool necked = !list.neck.empty() && list.neck[k].phase != NeckPhase::loose;
@@ -51,8 +66,8 @@ std::vector<Kept> kept_histories(const ContactList& list, const std::vector<Eige
     if (!moved.empty()) {
       const Eigen::Vector3i n = ImageCode::unpack(image) + moved[list.j(k)] - moved[list.i(k)];
       if (n.cwiseAbs().maxCoeff() > 1)
-        throw RunError("a contact spans more than one period of the cell (particles " + std::to_string(list.i(k)) +
-                       " and " + std::to_string(list.j(k)) + "); use a larger cell");
+        throw RunError("a contact spans more than one period of the cell (particles " + std::to_string(id[list.i(k)]) +
+                       " and " + std::to_string(id[list.j(k)]) + "); use a larger cell");
       image = ImageCode::of(n[0], n[1], n[2]);
     }
     kept.push_back({key_of(list.i(k), list.j(k), image), std::uint32_t(k)});
@@ -68,7 +83,7 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
   if (particles.size() > ContactList::index_mask)
     throw InputError("powder: more than " + std::to_string(ContactList::index_mask) + " particles are not supported");
   const auto moved = cell.periodic ? wrap_into_cell(particles, cell) : std::vector<Eigen::Vector3i>{};
-  const auto kept = kept_histories(list, moved);
+  const auto kept = kept_histories(list, moved, particles.id);
   // From here on the old histories alone are needed; the other arrays are filled anew where they are.
   const auto old_tangential = std::move(list.tangential);
   const auto old_neck = std::move(list.neck);
@@ -117,16 +132,31 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
     if (start[b + 1] > start[b])
       list.buckets.push_back({start[b], start[b + 1], std::uint8_t(b / materials), std::uint8_t(b % materials)});
   std::vector<std::size_t> next(start.begin(), start.end() - 1);
-  auto old = kept.begin();
-  for (const auto& p : pairs) {
-    const std::size_t k = next[bucket_of(p)]++;
-    list.first[k] = p.i;
-    list.second[k] = p.j | std::uint32_t(p.image) << ContactList::index_bits;
-    const Key key = key_of(p.i, p.j, p.image);
-    while (old != kept.end() && old->key < key) ++old;
-    if (old == kept.end() || old->key != key) continue;
-    if (needs.friction && !old_tangential.empty()) list.tangential[k] = old_tangential[old->place];
-    if (needs.necks && !old_neck.empty()) list.neck[k] = old_neck[old->place];
+  const auto find_old = [&](Key key) {
+    const auto old = std::lower_bound(kept.begin(), kept.end(), key, [](const Kept& a, Key k) { return a.key < k; });
+    return old != kept.end() && old->key == key ? &*old : nullptr;
+  };
+  std::vector<std::vector<CandidatePair>> of_bucket(start.size() - 1);
+  std::vector<CandidatePair> rounds;
+  for (std::size_t at = 0; at < pairs.size();) {
+    const std::uint32_t group = pairs[at].i / ContactList::group;
+    for (auto& b : of_bucket) b.clear();
+    for (; at < pairs.size() && pairs[at].i / ContactList::group == group; ++at)
+      of_bucket[bucket_of(pairs[at])].push_back(pairs[at]);
+    for (std::size_t b = 0; b < of_bucket.size(); ++b) {
+      rounds.clear();
+      sort_into_rounds(of_bucket[b], rounds);
+      for (const CandidatePair& p : rounds) {
+        const std::size_t k = next[b]++;
+        list.first[k] = p.i;
+        list.second[k] = p.j | std::uint32_t(p.image) << ContactList::index_bits;
+        if (kept.empty()) continue;
+        const Kept* const old = find_old(key_of(p.i, p.j, p.image));
+        if (!old) continue;
+        if (needs.friction && !old_tangential.empty()) list.tangential[k] = old_tangential[old->place];
+        if (needs.necks && !old_neck.empty()) list.neck[k] = old_neck[old->place];
+      }
+    }
   }
 
   list.reference_position.resize(particles.size());

@@ -8,7 +8,9 @@
 
 namespace densify::dem {
 
-/// Neighbour pairs i < j (or i == j across a periodic face), sorted by bucket, then i, then j.
+/// Neighbour pairs i < j (or i == j across a periodic face), sorted by bucket, then by groups of `group` particles i,
+/// and within a group in rounds: the first pair of each i, the second of each, and so on.  Neighbours in the list then
+/// add to different particles, and a pass does not wait for its own last sum.
 struct ContactList {
   /// All pairs of one pair of materials.
   struct Bucket {
@@ -16,6 +18,8 @@ struct ContactList {
     std::uint8_t material_a, material_b;  ///< a <= b
   };
   static constexpr std::uint32_t index_bits = 27, index_mask = (1u << index_bits) - 1;
+
+  static constexpr std::uint32_t group = 16;
 
   std::vector<std::uint32_t> first;   ///< i
   std::vector<std::uint32_t> second;  ///< j | image code << 27

@@ -1,9 +1,11 @@
 #pragma once
 // The contact pass: every contact's law, then the sum over each particle's contacts in one fixed order.
 
-#include <type_traits>
+#include <array>
+#include <variant>
 
-#include "dem/contact/near_list.h"
+#include "dem/contact/chunks.h"
+#include "dem/contact/kernel.h"
 #include "dem/contact/step_stiffness.h"
 #include "dem/material/pair_table.h"
 
@@ -31,10 +33,11 @@ struct ContactRecord {
 ///
 /// `expansion_step[m]` is the relative growth of the radius of material m since the last pass, (r_new - r_old)/r_new.
 /// With `record` given the pass also fills it, one entry a pair, and with `stiffness` given its sums for its next_step;
-/// forces are bit for bit the same with and without them, and all is for every number of threads.
+/// forces are bit for bit the same with and without them, and all is for every number of threads and with all kernels.
 class ForcePass {
  public:
-  ForcePass(const ContactModel& model, int threads) : model_(model), threads_(threads) {}
+  ForcePass(const ContactModel& model, int threads, const KernelTable& kernels = chosen_kernels())
+      : model_(model), threads_(threads), kernels_(&kernels) {}
 
   void compute(Particles&, ContactList&, const Cell&, const PairTable&, const std::vector<double>& expansion_step,
                PassTime, std::vector<ContactRecord>* record, StepStiffness* stiffness);
@@ -52,30 +55,29 @@ class ForcePass {
   std::size_t bytes() const;
 
  private:
-  /// What a particle's sum needs of one pair.
-  struct Share {
-    Vec3 force, couple;
-    double lever_i, lever_j;
+  using Law = std::variant<KelvinVoigt<LinearSpring>, KelvinVoigt<HertzSpring>, SinteringContact<LinearSpring>,
+                           SinteringContact<HertzSpring>>;
+  /// A bucket of this pass.
+  struct Bucket {
+    KernelJob job;
+    Law law;
   };
-  struct ShareSink;
 
-  template <class Law>
-  void run_bucket(const Law&, std::size_t bucket, Particles&, ContactList&, const Cell&,
-                  const std::vector<double>& expansion_step, PassTime, std::vector<ContactRecord>* record,
-                  StepStiffness* stiffness);
-  void add_recorded(Particles&, const ContactList&, const std::vector<ContactRecord>&);
-  void gather(Particles&, StepStiffness* stiffness) const;
+  void prepare(Particles&, ContactList&, const Cell&, const PairTable&, const std::vector<double>& expansion_step,
+               PassTime, const StepStiffness*);
+  void run_chunk(std::size_t chunk, Particles&, std::vector<double>& sums, std::vector<ContactRecord>*, StepStiffness*);
+  void add_incoming(std::size_t chunk, Particles&, StepStiffness*) const;
 
   ContactModel model_;
   int threads_;
+  const KernelTable* kernels_;
   NearList near_;
-  std::optional<ImageShifts> shifts_;  // of the cell below
-  Mat3 shifts_h_ = Mat3::Zero();       // [m]
-  // Several threads only:
-  std::vector<Share> shares_;                     // of each near pair
-  std::vector<StiffnessShare> stiffness_shares_;  // only when asked for
-  std::vector<std::uint32_t> incidence_;          // near pair << 1 | side, ascending for each particle
-  std::vector<std::size_t> incidence_begin_;
+  Chunks chunks_;
+  std::array<double, 4 * 27> shifts_{};  // of the image codes in the cell below [m]
+  Mat3 shifts_h_ = Mat3::Zero();         // [m]
+  std::vector<Bucket> buckets_;
+  std::vector<std::vector<double>> sums_;  // of the chunk at work, for each thread
+  std::vector<double> for_others_;         // forces (and torques) of chunks on particles of other chunks
 };
 
 /// The normal law of a bucket at the present temperature, for callers outside the hot loop.
@@ -95,11 +97,6 @@ SinteringContact<Spring> make_sintering(const ContactModel& m, const PairPropert
   const KelvinVoigt<Spring> loose{make_spring<Spring>(m, p), m.damping_ratio};
   return {loose, *m.sintering, p.mobility_factor, p.surface_energy, p.cap, p.sine, p.active, p.activation_step};
 }
-
-/// True for the laws whose contacts carry a neck.
-template <class Law>
-inline constexpr bool has_necks =
-    !std::is_same_v<Law, KelvinVoigt<LinearSpring>> && !std::is_same_v<Law, KelvinVoigt<HertzSpring>>;
 
 /// Calls visit(spring) with a value of the spring type that the model asks for.
 template <class Visit>

@@ -21,8 +21,7 @@ void NearList::take_all(const ContactList& list) {
   for (const auto& bucket : list.buckets) bucket_end_.push_back(bucket.end);
 }
 
-void NearList::prune(ContactList& list, const Particles& particles, const Cell& cell,
-                     const std::vector<double>& expansion) {
+void NearList::prune(ContactList& list, const Particles& particles, const Cell& cell) {
   content_ = Content::pruned;
   skin_ = share_of_skin * list.skin;
   const ImageShifts shifts(cell);
@@ -44,24 +43,10 @@ void NearList::prune(ContactList& list, const Particles& particles, const Cell& 
     bucket_end_.push_back(count);
   }
   places_.resize(count);
-
-  reference_position_.resize(particles.size());
-  for (std::size_t p = 0; p < particles.size(); ++p) reference_position_[p] = body[p].position;
-  reference_h_ = cell.h;
-  reference_expansion_ = expansion;
-  largest_radius_ = list.largest_radius;
-}
-
-double NearList::travel(const Particles& particles, const Cell& cell, const std::vector<double>& expansion,
-                        int threads) const {
-  if (content_ != Content::pruned) return std::numeric_limits<double>::infinity();
-  const ListMoment pruned{reference_position_, reference_h_, reference_expansion_, largest_radius_, skin_};
-  return approach(pruned, particles, cell, expansion, threads);
 }
 
 std::size_t NearList::bytes() const {
-  return places_.capacity() * sizeof(std::uint32_t) + bucket_end_.capacity() * sizeof(std::size_t) +
-         reference_position_.capacity() * sizeof(Vec3) + reference_expansion_.capacity() * sizeof(double);
+  return places_.capacity() * sizeof(std::uint32_t) + bucket_end_.capacity() * sizeof(std::size_t);
 }
 
 }  // namespace densify::dem

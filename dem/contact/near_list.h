@@ -32,12 +32,10 @@ class NearList {
 
   /// The pairs that are closer than touching + skin() and those with a neck, in the order of the list.  A pair left out
   /// loses its friction spring, as every pair does that does not touch.
-  void prune(ContactList&, const Particles&, const Cell&, const std::vector<double>& expansion);
+  void prune(ContactList&, const Particles&, const Cell&);
 
-  /// How far the surfaces of two particles can have approached since prune(): to be pruned again at skin().  Infinite
-  /// when there was none since clear(), NaN when a position is not finite. [m]
-  double travel(const Particles&, const Cell&, const std::vector<double>& expansion, int threads) const;
-  double skin() const { return skin_; }  ///< [m]
+  /// How far the surfaces of two particles may approach after prune() until it must be pruned again [m].
+  double skin() const { return skin_; }
 
   /// Places in the contact list, ascending; those of bucket b end at bucket_end()[b].
   const std::vector<std::uint32_t>& places() const { return places_; }
@@ -51,11 +49,7 @@ class NearList {
   Content content_ = Content::nothing;
   std::vector<std::uint32_t> places_;
   std::vector<std::size_t> bucket_end_;
-  // When it was pruned:
-  std::vector<Vec3> reference_position_;
-  Mat3 reference_h_ = Mat3::Zero();
-  std::vector<double> reference_expansion_;
-  double largest_radius_ = 0, skin_ = 0;
+  double skin_ = 0;
 };
 
 }  // namespace densify::dem

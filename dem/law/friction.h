@@ -1,10 +1,10 @@
 #pragma once
-// Regularised Coulomb friction (4.27, 4.28, Fig. 4.6): a tangential spring that slides at mu times the normal force.
+// Regularised Coulomb friction (4.27, 4.28, Fig. 4.6) of one contact, and what it adds to step limits.
 
 #include <algorithm>
 #include <cmath>
 
-#include "dem/law/contact_model.h"
+#include "dem/law/coulomb.h"
 #include "dem/law/law.h"
 #include "dem/state/particles.h"
 
@@ -23,22 +23,16 @@ struct TangentialInput {
 /// Tangential force on i [N]; advances the spring displacement `slip` [m], which turns with the contact plane and is
 /// cut back to what the sliding force stretches.
 inline Vec3 coulomb(const FrictionModel& model, double coefficient, const TangentialInput& in, Vec3& slip) {
-  const double k = model.tangential_stiffness_ratio * in.normal_stiffness;
-  const double c =
-      model.tangential_damping_ratio > 0 ? 2 * model.tangential_damping_ratio * std::sqrt(in.reduced_mass * k) : 0.0;
-  slip += in.velocity * in.step;
-  slip -= slip.dot(in.normal) * in.normal;
-  Vec3 force = k * slip + c * in.velocity;
-  const double limit = coefficient * in.normal_force, size2 = force.squaredNorm();
-  if (size2 > limit * limit) {
-    force *= limit / std::sqrt(size2);
-    if (k > 0) slip = (force - c * in.velocity) / k;
-  }
-  return force;
+  const auto triple = [](const Vec3& v) { return TripleOf<double>{v[0], v[1], v[2]}; };
+  TripleOf<double> turned = triple(slip);
+  const TripleOf<double> force =
+      coulomb(model, coefficient,
+              TangentialInputOf<double>{triple(in.normal), triple(in.velocity), in.normal_force, in.normal_stiffness,
+                                        in.reduced_mass, in.step},
+              turned);
+  slip = Vec3(turned.x, turned.y, turned.z);
+  return {force.x, force.y, force.z};
 }
-
-/// What a solid sphere answers to a tangential force at its surface, 1/m + r^2/J, over its 1/m.
-inline constexpr double rotation_factor = 3.5;
 
 /// Stiffness and damper of the sticking tangential spring as its particles' step limits have to count them, 3.5 k_t and
 /// 3.5 c_t across the normal: with displacement x and turn y = r phi sqrt(J/(m r^2)), |P (x + sqrt(2.5) n x y)|^2 <=
@@ -50,15 +44,6 @@ inline Linearisation tangential_share(const Linearisation& l, const ContactModel
   t.stiffness = rotation_factor * k;
   t.damper = rotation_factor * 2 * model.friction->tangential_damping_ratio * std::sqrt(reduced_mass * k);
   return t;
-}
-
-/// The same share in StepStiffness, 3.5 (k_t + 2 c_t/dt) [N/m].
-inline double tangential_step_stiffness(const FrictionModel& model, double normal_stiffness, double reduced_mass,
-                                        double next_step) {
-  const double k = model.tangential_stiffness_ratio * normal_stiffness;
-  const double c =
-      model.tangential_damping_ratio > 0 ? 2 * model.tangential_damping_ratio * std::sqrt(reduced_mass * k) : 0.0;
-  return rotation_factor * (k + 2 * c / next_step);
 }
 
 }  // namespace densify::dem

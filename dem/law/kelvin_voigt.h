@@ -15,21 +15,24 @@ struct KelvinVoigt {
   double damping_ratio;  ///< xi, of the critical damping (4.24, 4.25) of the tangent stiffness
 
   /// Damper c = 2 xi sqrt(m k) with the reduced mass and the tangent stiffness (4.24, 4.25) [N s/m].
-  double damper(const NormalInput& in) const {
-    return damping_ratio == 0
-               ? 0.0
-               : 2 * damping_ratio * std::sqrt(in.reduced_mass * spring.tangent(in.overlap, in.elastic_radius));
+  template <class T>
+  T damper(const NormalInputOf<T>& in) const {
+    if (damping_ratio == 0) return 0.0;
+    return 2 * damping_ratio * root(in.reduced_mass * spring.tangent(in.overlap, in.elastic_radius));
   }
 
   /// Force of an overlapping pair, in.overlap < 0 (4.14, 4.22).
-  NormalForce update(const NormalInput& in) const {
+  template <class T>
+  NormalForceOf<T> update(const NormalInputOf<T>& in) const {
     return {spring.force(in.overlap, in.elastic_radius) + damper(in) * in.rate, 0};
   }
 
   /// k + 2 c/dt of a step of length dt, at the overlap that the present rate leads to: see StepStiffness [N/m].
-  double step_stiffness(const NormalInput& in, double next_step) const {
-    const double k = spring.tangent(in.overlap + std::min(0.0, in.rate) * next_step, in.elastic_radius);
-    return damping_ratio == 0 ? k : k + 4 * damping_ratio * std::sqrt(in.reduced_mass * k) / next_step;
+  template <class T>
+  T step_stiffness(const NormalInputOf<T>& in, double next_step) const {
+    const T k = spring.tangent(in.overlap + smaller(T(0.0), in.rate) * next_step, in.elastic_radius);
+    if (damping_ratio == 0) return k;
+    return k + 4 * damping_ratio * root(in.reduced_mass * k) / next_step;
   }
 
   Linearisation linearise(const NormalInput& in) const {

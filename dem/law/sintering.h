@@ -31,6 +31,19 @@ struct NeckHistory {
   NeckPhase phase = NeckPhase::loose;
 };
 
+/// What changes of a neck while it stays in its phase; a lane each of several.
+template <class T>
+struct NeckOf {
+  T radius;   ///< a [m]
+  T elastic;  ///< u_e [m]
+};
+
+/// Which contacts are in which phase.
+template <class Condition>
+struct PhasesOf {
+  Condition loose, sintering, bonded, dormant;
+};
+
 template <class Spring>
 struct SinteringContact {
   KelvinVoigt<Spring> loose;  ///< the law before activation
@@ -42,14 +55,27 @@ struct SinteringContact {
   bool active;             ///< T >= activation temperature
   bool activation_step;    ///< the first update above it: contacts found now are pressed ones, later ones are born
 
-  double largest_neck(const NormalInput& in) const { return in.sintering_radius * sine; }  ///< a_max (4.32) [m]
-  double smallest_neck(const NormalInput& in) const { return settings.starting_neck * in.sintering_radius; }
+  /// a_max (4.32) [m].
+  template <class T>
+  T largest_neck(const NormalInputOf<T>& in) const {
+    return in.sintering_radius * sine;
+  }
+  template <class T>
+  T smallest_neck(const NormalInputOf<T>& in) const {
+    return settings.starting_neck * in.sintering_radius;
+  }
 
   /// eta = pi a^4 / (8 D_eff) (4.40) [N s/m].
-  double viscosity(double a) const { return a * a * a * a / mobility_factor; }
+  template <class T>
+  T viscosity(const T& a) const {
+    return (a * a) * (a * a) / mobility_factor;
+  }
 
   /// F_sint = pi gamma (4 r (1 - cos(Psi/2)) + a sin(Psi/2)) (4.36) [N].
-  double sintering_force(double a, double r) const { return std::numbers::pi * surface_energy * (cap * r + a * sine); }
+  template <class T>
+  T sintering_force(const T& a, const T& r) const {
+    return std::numbers::pi * surface_energy * (cap * r + a * sine);
+  }
 
   /// Share of flow and sintering force that is switched on: 1 while sintering, 0 for a bond.
   double activity(const NeckHistory& h, double time) const {
@@ -73,70 +99,93 @@ struct SinteringContact {
     return h.phase == NeckPhase::activating ? 1 - cosine_step(progress(h, time)) : 0;
   }
 
+  /// True for a phase that this step neither begins nor ends, unless update_settled says otherwise.
+  bool settled(NeckPhase p) const {
+    switch (p) {
+      case NeckPhase::loose:
+      case NeckPhase::dormant:
+        return !active;
+      case NeckPhase::sintering:
+        return active;
+      default:
+        return p == NeckPhase::bonded;
+    }
+  }
+
   /// Force of this step; advances the neck.  Called for overlapping pairs and for every pair that has a neck.
   NormalForce update(const NormalInput& in, NeckHistory& h) const {
-    if (h.phase == NeckPhase::loose) {
-      if (!active) return loose.update(in);
-      if (!activation_step && in.step > 0) return born(in, h);
-      begin(in, h);
-      const double share = activity(h, in.time);
-      const double f_sint = share > 0 ? share * sintering_force(h.radius, in.sintering_radius) : 0;
-      const double f = settings.model == SinteringModel::viscous ? viscosity(h.radius) * in.rate
-                                                                 : loose.spring.force(h.elastic, in.elastic_radius);
-      return {f + f_sint, f_sint};
-    }
-    change_phase(in, h);
-    double neck = h.radius;  // at the middle of the step (4.57)
-    if (flows(h.phase)) {
-      grow(in, h);
-      if (in.overlap >= 0 && h.radius <= smallest_neck(in) && h.phase != NeckPhase::arriving) {
-        h = NeckHistory{};  // a neck that vanished is a lost contact
-        return {};
+    if (settled(h.phase)) {
+      NeckOf<double> neck{h.radius, h.elastic};
+      bool turning = false;
+      const NormalForce f = update_settled(in, neck,
+                                           PhasesOf<bool>{h.phase == NeckPhase::loose, h.phase == NeckPhase::sintering,
+                                                          h.phase == NeckPhase::bonded, h.phase == NeckPhase::dormant},
+                                           turning);
+      if (!turning) {
+        h.radius = neck.radius;
+        h.elastic = neck.elastic;
+        return f;
       }
-      neck = 0.5 * (neck + h.radius);
-      if (h.radius >= largest_neck(in)) reach_equilibrium(in, h);
     }
-    const double share = activity(h, in.time);
-    const double f_sint = share > 0 ? share * sintering_force(neck, in.sintering_radius) : 0;
-    if (settings.model == SinteringModel::viscous && flows(h.phase) && h.phase != NeckPhase::arriving)
-      return {viscosity(neck) * in.rate + f_sint, f_sint};
+    return update_turning(in, h);
+  }
 
-    const double before = h.elastic;
-    const double k = loose.spring.tangent(before, in.elastic_radius);
-    const double mobility = h.phase == NeckPhase::sintering ? mobility_factor / (neck * neck * neck * neck)
-                                                            : 1 / series_viscosity(h.phase, neck, share);
-    // Theta rule for du_e/dt = rate - F(u_e)/eta, one Newton step: theta 1 backward Euler (L-stable), 1/2 (4.67).
-    const double theta = settings.update == MaxwellUpdate::trapezoidal ? 0.5 : 1.0;
-    const double elastic_rate =
-        (in.rate - mobility * loose.spring.force(before, in.elastic_radius)) / (1 + theta * in.step * mobility * k);
-    h.elastic = before + in.step * elastic_rate;
-    double f = loose.spring.force(h.elastic, in.elastic_radius);
-    // The damper sees the elastic part of the rate only: it stills vibration and adds no viscosity to the flow.
-    if (settings.damping_ratio > 0 && in.step > 0) f += damper(in, k) * elastic_rate;
-    return {f + f_sint, f_sint};
+  /// The same for contacts in settled phases.  `turning` becomes true for those that reach equilibrium or vanish in
+  /// this step: they are to be given to `update` instead, as they were before.
+  template <class T, class Condition>
+  NormalForceOf<T> update_settled(const NormalInputOf<T>& in, NeckOf<T>& neck, const PhasesOf<Condition>& phase,
+                                  Condition& turning) const {
+    NormalForceOf<T> f;
+    if (any(phase.loose)) f = loose.update(in);
+    const auto necked = phase.sintering | phase.bonded | phase.dormant;
+    if (!any(necked)) return f;
+    NeckOf<T> after = neck;
+    T middle = neck.radius, f_sint = 0.0;
+    Flow<T> flow{0.0, 1.0};
+    if (any(phase.sintering)) {
+      const T grown = grown_neck(in, neck.radius);
+      turning = phase.sintering & ((grown >= largest_neck(in)) | ((in.overlap >= 0) & (grown <= smallest_neck(in))));
+      after.radius = select(phase.sintering, grown, neck.radius);
+      middle = 0.5 * (neck.radius + after.radius);  // of the step (4.57)
+      f_sint = select(phase.sintering, sintering_force(middle, in.sintering_radius), T(0.0));
+      flow.mobility = select(phase.sintering, T(mobility_factor), flow.mobility);
+      flow.per = select(phase.sintering, (middle * middle) * (middle * middle), flow.per);
+    }
+    if (settings.at_equilibrium == AtEquilibrium::viscous && any(phase.bonded)) {
+      flow.mobility = select(phase.bonded, T(1.0), flow.mobility);
+      flow.per = select(phase.bonded, larger(T(settings.viscosity_before), viscosity(middle)), flow.per);
+    }
+    NormalForceOf<T> g = relax(in, flow, f_sint, after.elastic);
+    if (settings.model == SinteringModel::viscous && any(phase.sintering)) {
+      g.total = select(phase.sintering, viscosity(middle) * in.rate + f_sint, g.total);
+      after.elastic = select(phase.sintering, neck.elastic, after.elastic);
+    }
+    f.total = select(necked, g.total, f.total);
+    f.sintering = select(necked, g.sintering, f.sintering);
+    neck.radius = after.radius;
+    neck.elastic = select(necked, after.elastic, neck.elastic);
+    return f;
   }
 
   /// The constant stiffness that is as near to instability in a step of length dt as spring, damper and dashpot are:
   /// (k + 2 c/dt)/(1 + (theta - 1/2) k dt/eta), 2 eta/dt without a spring; neck and spring are those that the present
   /// rate leads to (see StepStiffness) [N/m].
   double step_stiffness(const NormalInput& in, const NeckHistory& h, double next_step) const {
-    if (h.phase == NeckPhase::loose) return loose.step_stiffness(in, next_step);
-    const double approach = std::max(0.0, -in.rate) * next_step;
-    const double k = loose.spring.tangent(h.elastic - approach, in.elastic_radius);
-    const double whole = k + 2 * damper(in, k) / next_step;
     // A neck that is about to reach equilibrium or that freezes stiffens within one step.
     const bool soft =
         h.phase == NeckPhase::sintering || h.phase == NeckPhase::activating || h.phase == NeckPhase::reactivating;
-    if (!soft) return whole;
-    NormalInput later = in;
-    later.overlap -= approach;
-    const double a = settings.neck == NeckGrowth::overlap
-                         ? std::max(neck_of_overlap(later), smallest_neck(in))
-                         : std::sqrt(h.radius * h.radius + 2 * in.sintering_radius * approach);
-    if (settings.model == SinteringModel::viscous) return std::max(whole, 2 * viscosity(a) / next_step);
-    if (a >= largest_neck(in) || settings.update == MaxwellUpdate::trapezoidal) return whole;
-    const double eta = series_viscosity(h.phase, a, activity(h, in.time));
-    return whole / (1 + 0.5 * k * next_step / eta);
+    const auto eta = [&](double a) {
+      return h.phase == NeckPhase::sintering ? viscosity(a) : series_viscosity(h.phase, a, activity(h, in.time));
+    };
+    return step_stiffness(in, NeckOf<double>{h.radius, h.elastic}, h.phase == NeckPhase::loose, soft, eta, next_step);
+  }
+
+  /// The same for contacts in settled phases.
+  template <class T, class Condition>
+  T step_stiffness(const NormalInputOf<T>& in, const NeckOf<T>& neck, const PhasesOf<Condition>& phase,
+                   double next_step) const {
+    return step_stiffness(
+        in, neck, phase.loose, phase.sintering, [&](const T& a) { return viscosity(a); }, next_step);
   }
 
   Linearisation linearise(const NormalInput& in, const NeckHistory& h) const {
@@ -158,6 +207,84 @@ struct SinteringContact {
   }
 
  private:
+  /// `soft` tells which flow, `eta` gives the viscosity in series for a neck radius.
+  template <class T, class Condition, class Viscosity>
+  T step_stiffness(const NormalInputOf<T>& in, const NeckOf<T>& neck, const Condition& is_loose, const Condition& soft,
+                   const Viscosity& eta, double next_step) const {
+    const T approach = larger(T(0.0), -in.rate) * next_step;
+    const T k = loose.spring.tangent(neck.elastic - approach, in.elastic_radius);
+    T stiffness = k + 2 * damper(in, k) / next_step;
+    if (any(soft)) {
+      NormalInputOf<T> later = in;
+      later.overlap = in.overlap - approach;
+      const T a = settings.neck == NeckGrowth::overlap
+                      ? larger(neck_of_overlap(later), smallest_neck(in))
+                      : root(neck.radius * neck.radius + 2 * in.sintering_radius * approach);
+      if (settings.model == SinteringModel::viscous)
+        stiffness = select(soft, larger(stiffness, 2 * viscosity(a) / next_step), stiffness);
+      else if (settings.update != MaxwellUpdate::trapezoidal)
+        stiffness = select(
+            soft, select(a >= largest_neck(in), stiffness, stiffness / (1 + 0.5 * k * next_step / eta(a))), stiffness);
+    }
+    return any(is_loose) ? select(is_loose, loose.step_stiffness(in, next_step), stiffness) : stiffness;
+  }
+
+  /// 1/eta as a fraction, mobility/per: one division less.
+  template <class T>
+  struct Flow {
+    T mobility, per;
+  };
+
+  /// Advances the elastic displacement by the theta rule for du_e/dt = rate - F(u_e)/eta, one Newton step: theta 1 is
+  /// backward Euler (L-stable), 1/2 is (4.67).
+  template <class T>
+  NormalForceOf<T> relax(const NormalInputOf<T>& in, const Flow<T>& flow, const T& f_sint, T& elastic) const {
+    const T k = loose.spring.tangent(elastic, in.elastic_radius);
+    const double theta = settings.update == MaxwellUpdate::trapezoidal ? 0.5 : 1.0;
+    const T elastic_rate = (flow.per * in.rate - flow.mobility * loose.spring.force(elastic, in.elastic_radius)) /
+                           (flow.per + theta * in.step * flow.mobility * k);
+    elastic = elastic + in.step * elastic_rate;
+    T f = loose.spring.force(elastic, in.elastic_radius);
+    // The damper sees the elastic part of the rate only: it stills vibration and adds no viscosity to the flow.
+    if (settings.damping_ratio > 0 && in.step > 0) f = f + damper(in, k) * elastic_rate;
+    return {f + f_sint, f_sint};
+  }
+
+  /// The general update: birth, transitions, equilibrium, loss.
+  NormalForce update_turning(const NormalInput& in, NeckHistory& h) const {
+    if (h.phase == NeckPhase::loose) {
+      if (!active) return loose.update(in);
+      if (!activation_step && in.step > 0) return born(in, h);
+      begin(in, h);
+      const double share = activity(h, in.time);
+      const double f_sint = share > 0 ? share * sintering_force(h.radius, in.sintering_radius) : 0;
+      const double f = settings.model == SinteringModel::viscous ? viscosity(h.radius) * in.rate
+                                                                 : loose.spring.force(h.elastic, in.elastic_radius);
+      return {f + f_sint, f_sint};
+    }
+    change_phase(in, h);
+    double neck = h.radius;  // at the middle of the step (4.57)
+    if (flows(h.phase)) {
+      h.radius = grown_neck(in, h.radius);
+      if (in.overlap >= 0 && h.radius <= smallest_neck(in) && h.phase != NeckPhase::arriving) {
+        h = NeckHistory{};  // a neck that vanished is a lost contact
+        return {};
+      }
+      neck = 0.5 * (neck + h.radius);
+      if (h.radius >= largest_neck(in)) reach_equilibrium(in, h);
+    }
+    const double share = activity(h, in.time);
+    const double f_sint = share > 0 ? share * sintering_force(neck, in.sintering_radius) : 0;
+    if (settings.model == SinteringModel::viscous && flows(h.phase) && h.phase != NeckPhase::arriving)
+      return {viscosity(neck) * in.rate + f_sint, f_sint};
+    Flow<double> flow{mobility_factor, (neck * neck) * (neck * neck)};
+    if (h.phase != NeckPhase::sintering) {
+      const double eta = series_viscosity(h.phase, neck, share);
+      flow = std::isinf(eta) ? Flow<double>{0, 1} : Flow<double>{1, eta};
+    }
+    return relax(in, flow, f_sint, h.elastic);
+  }
+
   double progress(const NeckHistory& h, double time) const {
     return settings.relaxation_time > 0 ? std::clamp((time - h.since) / settings.relaxation_time, 0.0, 1.0) : 1.0;
   }
@@ -168,8 +295,10 @@ struct SinteringContact {
     h.since = time - done * settings.relaxation_time;
   }
 
-  double damper(const NormalInput& in, double k) const {
-    return settings.damping_ratio > 0 ? 2 * settings.damping_ratio * std::sqrt(in.reduced_mass * k) : 0.0;
+  template <class T>
+  T damper(const NormalInputOf<T>& in, const T& k) const {
+    if (!(settings.damping_ratio > 0)) return 0.0;
+    return 2 * settings.damping_ratio * root(in.reduced_mass * k);
   }
 
   /// Dashpot in series with the spring (4.47, 4.51); eta_inf is never below the theory's viscosity.
@@ -180,12 +309,14 @@ struct SinteringContact {
       return settings.at_equilibrium == AtEquilibrium::viscous && phase == NeckPhase::bonded
                  ? before
                  : std::numeric_limits<double>::infinity();
+    if (theory >= settings.viscosity_before) return theory;  // where nothing diffuses it is infinite
     return (1 - share) * before + share * theory;
   }
 
-  double neck_of_overlap(const NormalInput& in) const {
-    const double r = in.sintering_radius, rest = r + 0.5 * in.overlap;
-    return in.overlap < 0 ? 1.43 * std::sqrt(std::max(0.0, r * r - rest * rest)) : 0.0;
+  template <class T>
+  T neck_of_overlap(const NormalInputOf<T>& in) const {
+    const T r = in.sintering_radius, rest = r + 0.5 * in.overlap;
+    return select(in.overlap < 0, 1.43 * root(larger(T(0.0), r * r - rest * rest)), T(0.0));
   }
 
   void begin(const NormalInput& in, NeckHistory& h) const {
@@ -209,11 +340,12 @@ struct SinteringContact {
   }
 
   /// a' = -r v / a (4.31) as a^2 - 2 r v dt (4.58), or the overlap's own neck; between a small neck and a_max.
-  void grow(const NormalInput& in, NeckHistory& h) const {
-    const double a = settings.neck == NeckGrowth::overlap
-                         ? neck_of_overlap(in)
-                         : std::sqrt(std::max(0.0, h.radius * h.radius - 2 * in.sintering_radius * in.rate * in.step));
-    h.radius = std::clamp(a, smallest_neck(in), largest_neck(in));
+  template <class T>
+  T grown_neck(const NormalInputOf<T>& in, const T& before) const {
+    const T a = settings.neck == NeckGrowth::overlap
+                    ? neck_of_overlap(in)
+                    : root(larger(T(0.0), before * before - 2 * in.sintering_radius * in.rate * in.step));
+    return smaller(larger(a, smallest_neck(in)), largest_neck(in));
   }
 
   void change_phase(const NormalInput& in, NeckHistory& h) const {

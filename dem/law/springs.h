@@ -1,7 +1,7 @@
 #pragma once
 // Normal springs: force and tangent stiffness of an elastic displacement, negative in compression.
 
-#include <cmath>
+#include "dem/law/scalar.h"
 
 namespace densify::dem {
 
@@ -10,8 +10,14 @@ struct LinearSpring {
   double stiffness;  ///< k_n [N/m]
 
   /// Force [N], tension positive.
-  double force(double u, double /*radius*/) const { return stiffness * u; }
-  double tangent(double /*u*/, double /*radius*/) const { return stiffness; }
+  template <class T>
+  T force(const T& u, const T& /*radius*/) const {
+    return stiffness * u;
+  }
+  template <class T>
+  T tangent(const T& /*u*/, const T& /*radius*/) const {
+    return stiffness;
+  }
   double energy(double u, double /*radius*/) const { return 0.5 * stiffness * u * u; }
   /// The displacement that carries a force: inverse of `force`.
   double displacement(double f, double /*radius*/) const { return f / stiffness; }
@@ -25,11 +31,13 @@ struct HertzSpring {
   double four_thirds_modulus;  ///< (4/3) E* [Pa]
   double tension_floor;        ///< overlap over radius at which the tensile stiffness is taken
 
-  double force(double u, double radius) const {
-    return u < 0 ? four_thirds_modulus * u * std::sqrt(-u * radius) : tensile_stiffness(radius) * u;
+  template <class T>
+  T force(const T& u, const T& radius) const {
+    return select(u < 0, four_thirds_modulus * u * root(-u * radius), tensile_stiffness(radius) * u);
   }
-  double tangent(double u, double radius) const {
-    return u < 0 ? 1.5 * four_thirds_modulus * std::sqrt(-u * radius) : tensile_stiffness(radius);
+  template <class T>
+  T tangent(const T& u, const T& radius) const {
+    return select(u < 0, 1.5 * four_thirds_modulus * root(-u * radius), tensile_stiffness(radius));
   }
   double energy(double u, double radius) const {
     return u < 0 ? 0.4 * four_thirds_modulus * u * u * std::sqrt(-u * radius) : 0.5 * tensile_stiffness(radius) * u * u;
@@ -43,8 +51,9 @@ struct HertzSpring {
   }
 
  private:
-  double tensile_stiffness(double radius) const {
-    return 1.5 * four_thirds_modulus * radius * std::sqrt(tension_floor);
+  template <class T>
+  T tensile_stiffness(const T& radius) const {
+    return 1.5 * four_thirds_modulus * std::sqrt(tension_floor) * radius;
   }
 };
 

@@ -59,7 +59,7 @@ TEST(Material, NeckOfCopper) {
   const double a_max = law.largest_neck(in);
   EXPECT_NEAR(a_max / 2.1516857e-5, 1, 3e-8);
   EXPECT_NEAR(law.viscosity(a_max) / 3.341137e8, 1, 2e-7);
-  EXPECT_NEAR(law.sintering_force(0, r) / 3.44132761e-4, 1, 2e-9);
+  EXPECT_NEAR(law.sintering_force(0.0, r) / 3.44132761e-4, 1, 2e-9);
   EXPECT_NEAR(law.sintering_force(a_max, r) / 4.55319622e-4, 1, 2e-9);
 }
 

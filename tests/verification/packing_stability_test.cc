@@ -2,89 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
-#include "tests/support/setups.h"
+#include "tests/support/contact_system.h"
 
 namespace densify::test {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 constexpr double radius = 5e-6, k_n = 1e5;
-
-struct System {
-  MatrixXd stiffness, damping;  // divided by the roots of the masses
-};
-
-/// Adds k g g^T of one spring whose stretch is g . x; g holds the parts of i and j (3 translations, 3 rotations each).
-void add_spring(MatrixXd& m, std::size_t i, std::size_t j, const VectorXd& gi, const VectorXd& gj, double k) {
-  VectorXd g = VectorXd::Zero(m.rows());
-  g.segment(Eigen::Index(6 * i), 6) += gi;
-  g.segment(Eigen::Index(6 * j), 6) += gj;
-  m += k * g * g.transpose();
-}
-
-System assemble(const Simulation& sim) {
-  const auto& p = sim.state().particles;
-  const auto& list = sim.state().contacts;
-  const auto& contact = sim.setup().contact;
-  const auto n = Eigen::Index(6 * p.size());
-  System s{MatrixXd::Zero(n, n), MatrixXd::Zero(n, n)};
-  for (std::size_t c = 0; c < list.size(); ++c) {
-    const std::size_t i = list.i(c), j = list.j(c);
-    const auto &a = p.body[i], &b = p.body[j];
-    Vec3 branch = b.position - a.position;
-    if (sim.state().cell.periodic) branch += sim.state().cell.shift(list.image(c));
-    const double overlap = branch.norm() - a.radius - b.radius;
-    if (overlap >= 0) continue;
-    const Vec3 normal = branch.normalized();
-    const double reduced = 1 / (a.inverse_mass + b.inverse_mass);
-    VectorXd gi = VectorXd::Zero(6), gj = VectorXd::Zero(6);
-    gi.head(3) = -normal;
-    gj.head(3) = normal;
-    add_spring(s.stiffness, i, j, gi, gj, k_n);
-    add_spring(s.damping, i, j, gi, gj, 2 * contact.damping_ratio * std::sqrt(reduced * k_n));
-    if (!contact.friction) continue;
-    const double k_t = contact.friction->tangential_stiffness_ratio * k_n;
-    const double c_t = 2 * contact.friction->tangential_damping_ratio * std::sqrt(reduced * k_t);
-    const Vec3 t1 = normal.unitOrthogonal(), t2 = normal.cross(t1);
-    for (const Vec3& t : {t1, t2}) {
-      gi << -t, -(a.radius + 0.5 * overlap) * normal.cross(t);
-      gj << t, -(b.radius + 0.5 * overlap) * normal.cross(t);
-      add_spring(s.stiffness, i, j, gi, gj, k_t);
-      add_spring(s.damping, i, j, gi, gj, c_t);
-    }
-  }
-  VectorXd root(n);
-  for (std::size_t q = 0; q < p.size(); ++q) {
-    const auto& b = p.body[q];
-    root.segment(Eigen::Index(6 * q), 3).setConstant(std::sqrt(b.inverse_mass));
-    root.segment(Eigen::Index(6 * q) + 3, 3).setConstant(std::sqrt(2.5 * b.inverse_mass) / b.radius);
-  }
-  s.stiffness = root.asDiagonal() * s.stiffness * root.asDiagonal();
-  s.damping = root.asDiagonal() * s.damping * root.asDiagonal();
-  return s;
-}
-
-/// Spectral radius of one leap-frog step with the half-step lag of the damper: x'' + (dt^2 K + dt C - 2) x' + (1 - dt
-/// C) x = 0 between steps.
-double spectral_radius(const System& s, double dt) {
-  const auto n = s.stiffness.rows();
-  const MatrixXd one = MatrixXd::Identity(n, n);
-  MatrixXd a = MatrixXd::Zero(2 * n, 2 * n);
-  a.topRightCorner(n, n) = one;
-  a.bottomLeftCorner(n, n) = dt * s.damping - one;
-  a.bottomRightCorner(n, n) = 2 * one - dt * dt * s.stiffness - dt * s.damping;
-  return a.eigenvalues().cwiseAbs().maxCoeff();
-}
-
-/// 2/omega_max of the undamped system [s].
-double undamped_limit(const System& s) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> k(s.stiffness, Eigen::EigenvaluesOnly);
-  return 2 / std::sqrt(k.eigenvalues().maxCoeff());
-}
 
 enum class Body { simple_cubic, body_centred, face_centred, cluster };
 
@@ -132,7 +55,7 @@ TEST(PackingStability, DampedSystemsAreStableAtTheLimit) {
   for (Body kind : {Body::body_centred, Body::cluster})
     for (const auto& m : {model(0.5, 0, 0), model(0.3, 1, 0.3), model(0, 0.5, 0.8), model(2, 0.1, 1)}) {
       const Simulation sim = make(kind, m);
-      const System s = assemble(sim);
+      const ContactSystem s = assemble(sim);
       EXPECT_LT(spectral_radius(s, sim.state().critical_step), 1 + 1e-5) << int(kind) << " xi " << m.damping_ratio;
       EXPECT_GT(spectral_radius(s, 5 * sim.state().critical_step), 1.1);  // it does notice
     }

@@ -1,0 +1,78 @@
+// What each feature of a scene costs, and how cost grows with the number of particles.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "app/bench.h"
+#include "app/bench_job.h"
+
+namespace densify::app {
+
+namespace {
+
+struct NamedFeature {
+  const char* name;
+  BenchFeature feature;
+};
+
+constexpr NamedFeature features[] = {{"none (case A)", BenchFeature::none},
+                                     {"friction and rotation", BenchFeature::friction},
+                                     {"thermal expansion, heating", BenchFeature::heating},
+                                     {"sintering (Maxwell)", BenchFeature::sintering},
+                                     {"Hertz", BenchFeature::hertz},
+                                     {"walls of a box", BenchFeature::walls},
+                                     {"output every 100 steps", BenchFeature::output},
+                                     {"periodic shear", BenchFeature::shear}};
+
+struct Size {
+  const char* packing;
+  Eigen::Vector3i copies;
+};
+
+}  // namespace
+
+int bench_features() {
+  fmt::print("{:28} {:>12} {:>10} {:>12} {:>10}\n", "feature, on m2k", "ns/contact", "more", "bytes/part", "more");
+  double time = 0, bytes = 0;
+  for (const auto& f : features) {
+    BenchJob job;
+    job.packing = "m2k";
+    job.feature = f.feature;
+    const BenchResult r = run_job(job);
+    if (f.feature == BenchFeature::none) time = r.ns_per_contact_step, bytes = r.bytes_per_particle;
+    fmt::print("{:28} {:>12.2f} {:>+9.0f}% {:>12.0f} {:>+10.0f}\n", f.name, r.ns_per_contact_step,
+               100 * (r.ns_per_contact_step / time - 1), r.bytes_per_particle, r.bytes_per_particle - bytes);
+    std::fflush(stdout);
+  }
+#ifdef DENSIFY_CHECKS
+  fmt::print("The contracts between functions are checked in this build.\n");
+#else
+  fmt::print(
+      "The contracts between functions are not checked in this build; DENSIFY_PRESET=audit is the same with them.\n");
+#endif
+  return 0;
+}
+
+int bench_scaling(int threads) {
+  const Size sizes[] = {{"m2k", {1, 1, 1}}, {"m20k", {1, 1, 1}}, {"m20k", {5, 2, 1}}, {"m20k", {5, 5, 2}}};
+  fmt::print("{:>9} {:>16} {:>10} {:>12} {:>16}\n", "particles", "ns/part-step", "ratio", "bytes/part",
+             "peak bytes/part");
+  double first = 0;
+  for (const auto& size : sizes) {
+    BenchJob job;
+    job.packing = size.packing;
+    job.copies = size.copies;
+    job.threads = threads;
+    const BenchResult r = run_job(job);
+    const double ns = 1e9 / r.particle_steps_per_s;
+    if (first == 0) first = ns;
+    fmt::print("{:>9} {:>16.2f} {:>10.2f} {:>12.0f} {:>16.0f}\n", r.particles, ns, ns / first, r.bytes_per_particle,
+               double(r.peak_resident) / double(r.particles));
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace densify::app

@@ -1,0 +1,77 @@
+#include "dem/contact/chunks.h"
+
+#include <algorithm>
+
+#include "dem/parallel.h"
+
+namespace densify::dem {
+
+namespace {
+
+// Particles of a chunk: few enough that its sums stay in the nearest caches, many enough that not every pair crosses a
+// border.
+constexpr std::size_t usual_size = 512;
+
+}  // namespace
+
+void Chunks::build(const ContactList& list, const NearList& near, std::size_t particles, int threads) {
+  particles_ = particles;
+  const std::size_t chunks = std::max<std::size_t>(1, (particles + usual_size / 2) / usual_size);
+  const std::size_t buckets = list.buckets.size();
+  const auto& places = near.places();
+  others_begin_.assign(chunks + 1, 0);
+  near_begin_.assign(buckets * chunks + 1, places.size());
+  slots_.resize(places.size());
+  std::vector<std::vector<std::uint32_t>> others(chunks);
+
+  for (std::size_t b = 0; b < buckets; ++b) {
+    auto from = places.begin() + std::ptrdiff_t(b == 0 ? 0 : near.bucket_end()[b - 1]);
+    const auto end = places.begin() + std::ptrdiff_t(near.bucket_end()[b]);
+    for (std::size_t c = 0; c < chunks; ++c) {  // pairs of a bucket ascend by the groups of their first particles
+      from = std::partition_point(from, end, [&](std::uint32_t k) { return list.i(k) < begin(c); });
+      near_begin_[b * chunks + c] = std::size_t(from - places.begin());
+    }
+  }
+  in_parts(chunks, threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t c = first; c < last; ++c) {
+      const std::uint32_t own = begin(c), beyond = begin(c + 1);
+      auto& mine = others[c];
+      for (std::size_t b = 0; b < buckets; ++b)
+        for (std::size_t n = near_begin(b, c); n < near_end(b, c); ++n)
+          if (const std::uint32_t j = list.j(places[n]); j < own || j >= beyond) mine.push_back(j);
+      std::sort(mine.begin(), mine.end());
+      mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
+      for (std::size_t b = 0; b < buckets; ++b)
+        for (std::size_t n = near_begin(b, c); n < near_end(b, c); ++n) {
+          const std::uint32_t j = list.j(places[n]);
+          slots_[n] = j >= own && j < beyond
+                          ? j - own
+                          : beyond - own + std::uint32_t(std::lower_bound(mine.begin(), mine.end(), j) - mine.begin());
+        }
+    }
+  });
+
+  for (std::size_t c = 0; c < chunks; ++c) others_begin_[c + 1] = others_begin_[c] + others[c].size();
+  others_.resize(others_begin_[chunks]);
+  incoming_.assign(chunks, {});
+  for (std::size_t c = 0; c < chunks; ++c) {
+    const auto& mine = others[c];
+    std::copy(mine.begin(), mine.end(), others_.begin() + std::ptrdiff_t(others_begin_[c]));
+    for (std::size_t at = 0, owner = 0; at < mine.size();) {
+      while (mine[at] >= begin(owner + 1)) ++owner;
+      const std::size_t next =
+          std::size_t(std::lower_bound(mine.begin() + std::ptrdiff_t(at), mine.end(), begin(owner + 1)) - mine.begin());
+      incoming_[owner].push_back({others_begin_[c] + at, others_begin_[c] + next});
+      at = next;
+    }
+  }
+}
+
+std::size_t Chunks::bytes() const {
+  std::size_t b = (slots_.capacity() + others_.capacity()) * sizeof(std::uint32_t) +
+                  (near_begin_.capacity() + others_begin_.capacity()) * sizeof(std::size_t);
+  for (const auto& i : incoming_) b += i.capacity() * sizeof(Incoming) + sizeof(i);
+  return b;
+}
+
+}  // namespace densify::dem

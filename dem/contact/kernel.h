@@ -1,0 +1,61 @@
+#pragma once
+// What a contact kernel is given, in plain pointers, and the kernels that this processor has.
+
+#include <string>
+#include <vector>
+
+#include "dem/contact/pair_force.h"
+
+namespace densify::dem {
+
+/// The near pairs of one bucket in one chunk of the particles, and everything they read and write.
+struct KernelJob {
+  // Near pairs:
+  const std::uint32_t* place;  ///< in the contact list
+  const std::uint32_t* slot;   ///< of j in the chunk's sums
+  // Contact list:
+  const std::uint32_t *first, *second;
+  double* tangential;  ///< 3 a pair
+  NeckHistory* neck;
+  // Particles:
+  const double* body;  ///< 8 a particle: x y z r v_x v_y v_z 1/m
+  const double* spin;  ///< 3 a particle
+  const std::uint8_t* material;
+  // Uniform:
+  const double* shift;     ///< 4 an image code (x y z 0); null in a cell that is not periodic
+  const double* gradient;  ///< velocity gradient by columns; null in a cell that does not deform
+  bool growing;
+  double growth_a, growth_b;  ///< relative growth rate of the radii of both materials since the last pass [1/s]
+  std::uint8_t material_a;
+  const void* law;
+  PairUniform uniform;
+  // Sums of the chunk, `stride` doubles a particle: force and 0; with friction torque and 0; with next_step > 0 what
+  // StiffnessSum holds and 0.  Its own particles first, then others.
+  double* sums;
+  std::size_t stride;
+  std::uint32_t first_particle;
+  double next_step;  ///< of StepStiffness [s]; 0: none asked for
+
+  /// The pair at a place of the near list by the general law; fills 8 doubles each: what i receives, what j receives
+  /// (force and 0, torque and 0), and the stiffness that both receive.
+  void (*general)(const KernelJob&, std::size_t near, double* of_i, double* of_j, double* stiffness);
+};
+
+/// Near pairs begin to end of a job.
+using Kernel = void (*)(const KernelJob&, std::size_t begin, std::size_t end);
+
+/// The kernels of one instruction set.
+struct KernelTable {
+  const char* name;
+  int width;               ///< contacts at once
+  Kernel kernel[2][2][2];  ///< [necks][Hertz][friction]
+};
+
+/// Those that this build holds and this processor can run, the plainest first.
+const std::vector<KernelTable>& available_kernels();
+
+/// The last of available_kernels(), or the one that the environment variable DENSIFY_INSTRUCTIONS names ("baseline",
+/// "avx2", "avx512"); all give the same results bit for bit.  Throws InputError when there is none of that name.
+const KernelTable& chosen_kernels();
+
+}  // namespace densify::dem
