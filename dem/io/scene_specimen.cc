@@ -198,7 +198,7 @@ void read_walls(Section& root, Scene& scene, ScenePlaces& places) {
                        "moves under the pressure of the process, or stands still");
           container.punch = control == Control::pressure;
           below.quantity("mass_fraction", container.punch_settings.mass_fraction, dim::none, Range::positive(),
-                         Need::optional, "fictitious mass of the punch over the scaled mass of the powder");
+                         Need::optional, "fictitious mass of the punch over the scaled mass of the powder, at least that of its mean particle");
           below.quantity("damping_ratio", container.punch_settings.damping_ratio, dim::none, Range::non_negative(),
                          Need::optional, "of the critical damping against the contacts of the punch");
         });
