@@ -98,6 +98,7 @@ void add_feature(dem::Setup& setup, BenchFeature feature) {
     setup.container.punch = false;
     setup.cell = Cell{};
   }
+  if (feature == BenchFeature::unguarded) setup.integration.guards.guarding = Guarding::off;
   if (feature == BenchFeature::shear) setup.cell.velocity_gradient(0, 1) = 1e-3;
 }
 

@@ -18,9 +18,10 @@ enum class BenchFeature : std::uint8_t {
   heating,    ///< thermal expansion while the temperature changes in every step
   sintering,  ///< case S
   hertz,
-  walls,   ///< a box around the packing in place of the periodic cell
-  output,  ///< a measured row of results every 100 steps
-  shear    ///< a periodic cell that deforms
+  walls,     ///< a box around the packing in place of the periodic cell
+  output,    ///< a measured row of results every 100 steps
+  shear,     ///< a periodic cell that deforms
+  unguarded  ///< without what watches over the state
 };
 
 struct BenchJob {

@@ -24,7 +24,8 @@ constexpr NamedFeature features[] = {{"none (case A)", BenchFeature::none},
                                      {"Hertz", BenchFeature::hertz},
                                      {"walls of a box", BenchFeature::walls},
                                      {"output every 100 steps", BenchFeature::output},
-                                     {"periodic shear", BenchFeature::shear}};
+                                     {"periodic shear", BenchFeature::shear},
+                                     {"without guards", BenchFeature::unguarded}};
 
 struct Size {
   const char* packing;

@@ -45,6 +45,9 @@ std::string text(const char* format, double a) {
   return buffer;
 }
 
+/// Share of the process in which a specimen may move more than a quasi-static one does.
+constexpr double tolerated_motion = 0.05;
+
 struct Paths {
   explicit Paths(const fs::path& folder)
       : checkpoint(folder / "checkpoint.h5"),
@@ -58,21 +61,6 @@ struct Paths {
 /// The first multiple of the interval after a time [s]; never, without an interval.
 double next_multiple(double interval, double time) {
   return std::isnan(interval) ? std::numeric_limits<double>::infinity() : interval * (std::floor(time / interval) + 1);
-}
-
-/// "particles 3 and 17": the pair with the largest overlap in units of the smaller radius.
-std::string deepest_pair(const State& state) {
-  double largest = 0;
-  std::string names;
-  for (std::size_t k = 0; k < state.contacts.size(); ++k) {
-    const std::size_t i = state.contacts.i(k), j = state.contacts.j(k);
-    const double ri = state.particles.body[i].radius, rj = state.particles.body[j].radius;
-    const double overlap = (ri + rj - branch_vector(state, k).norm()) / std::min(ri, rj);
-    if (overlap <= largest) continue;
-    largest = overlap;
-    names = "particles " + std::to_string(state.particles.id[i]) + " and " + std::to_string(state.particles.id[j]);
-  }
-  return names;
 }
 
 /// The numbers behind the scene's numbers, as comments that a scene reader skips.
@@ -120,11 +108,13 @@ class Run {
   RunSummary whole();
 
  private:
+  GreenBody pack();
   void prepare();
   void loop();
   void record(const Recording&, bool breakpoint);
   void write_checkpoint_now();
   void report_progress();
+  void warn_of_motion();
   void say(const std::string& line) const {
     if (options_.say) options_.say(line);
   }
@@ -153,6 +143,19 @@ class Run {
   RunSummary summary_;
 };
 
+GreenBody Run::pack() try {
+  return make_specimen(scene_, options_.threads, [this](double share) {
+    if (options_.stop && *options_.stop)
+      throw Interrupted("interrupted while packing; there is nothing to resume yet, start the run again");
+    if (options_.progress && clock_.seconds() - last_progress_ > 0.25) {
+      last_progress_ = clock_.seconds();
+      options_.progress({"packing", share, 0, 0, 0, 0, 0, share > 0 ? last_progress_ * (1 / share - 1) : 0});
+    }
+  });
+} catch (const RunError& error) {
+  throw RunError(error.what() + std::string(".  This was while packing; there is no checkpoint yet"));
+}
+
 void Run::prepare() {
   folder_.emplace(options_.folder, options_.mode, std::vector<std::string>{"checkpoint.h5"});
   owner_ = {fingerprint(scene_), options_.version};
@@ -164,14 +167,7 @@ void Run::prepare() {
     body = read_specimen(options_.packing);
     perturb(body, scene_.perturbation);
   } else {
-    body = make_specimen(scene_, options_.threads, [this](double share) {
-      if (options_.stop && *options_.stop)
-        throw Interrupted("interrupted while packing; there is nothing to resume yet, start the run again");
-      if (options_.progress && clock_.seconds() - last_progress_ > 0.25) {
-        last_progress_ = clock_.seconds();
-        options_.progress({"packing", share, 0, 0, 0, 0, 0, share > 0 ? last_progress_ * (1 / share - 1) : 0});
-      }
-    });
+    body = pack();
     perturb(body, scene_.perturbation);
   }
   const SpecimenReport specimen = report_on(body, scene_.materials);
@@ -222,6 +218,7 @@ std::string Run::stage_name(double t) const {
 void Run::record(const Recording& recording, bool breakpoint) {
   const Stopwatch watch;
   const State& state = sim_->state();
+  sim_->require_sound();
   const Measures m = measure(*sim_, recording);
   if (position_.history_rows == 0) {
     memory_.initial = m.envelope;
@@ -230,9 +227,6 @@ void Run::record(const Recording& recording, bool breakpoint) {
   }
   if (!std::isfinite(m.relative_density) || !m.stress.allFinite())
     throw RunError("density or stress is no longer finite; try a smaller step_safety or mass_scaling");
-  if (m.largest_overlap > 1.95)
-    throw RunError(deepest_pair(state) + " have passed through each other (overlap " + text("%.2f", m.largest_overlap) +
-                   " of the smaller radius); the contacts are too soft for the load or the step too large");
   const bool loose = !sim_->table().any_active() && scene_.contact.damping_ratio > 0 && sim_->pressure() > 0;
   if (loose && m.damping_share > 0.01 && summary_.warnings.empty())
     summary_.warnings.push_back("dampers carry " + text("%.1f %%", 100 * m.damping_share) +
@@ -257,12 +251,8 @@ void Run::record(const Recording& recording, bool breakpoint) {
 }
 
 void Run::write_checkpoint_now() {
+  sim_->require_sound();  // the last good checkpoint must stay when the last step has spoilt the state
   const Stopwatch watch;
-  // The last good checkpoint must stay when the last step has spoilt the state.
-  for (std::size_t p = 0; p < sim_->state().particles.size(); ++p)
-    if (const Body& b = sim_->state().particles.body[p]; !b.position.allFinite() || !b.velocity.allFinite())
-      throw RunError("position or velocity of particle " + std::to_string(sim_->state().particles.id[p]) +
-                     " is no longer finite; try a smaller step_safety or mass_scaling");
   history_->sync();
   position_.numbers = memory_.numbers();
   position_.numbers.push_back(last_snapshot_);
@@ -302,11 +292,6 @@ void Run::loop() {
         throw Interrupted("interrupted at process time " + text("%.6g s", state.time) +
                           "; continue with --resume --out " + options_.folder.string());
       }
-      if (scene_.integration.fixed_step > state.critical_step && state.critical_step > 0)
-        throw RunError("integration.fixed_step of " + text("%.4g s", scene_.integration.fixed_step) +
-                       " has come above the stability limit of " + text("%.4g s", state.critical_step) + " (particle " +
-                       std::to_string(state.particles.id[sim_->step_limit().particle]) +
-                       "); use a smaller one, or leave it out");
       if (clock_.seconds() - last_checkpoint_ > scene_.output.checkpoint_interval) write_checkpoint_now();
       if (clock_.seconds() - last_progress_ > 0.25) report_progress();
     }
@@ -334,6 +319,18 @@ void Run::loop() {
   }
 }
 
+/// The quasi-static criterion: inertia must not take part in the process for more than a short while.
+void Run::warn_of_motion() {
+  const Guards& guards = sim_->guards();
+  const double share = guards.not_quasi_static() / (sim_->state().time - start_time_);
+  if (!(share > tolerated_motion)) return;
+  summary_.warnings.push_back(
+      "not quasi-static for " + text("%.3g %%", 100 * share) + " of the process: kinetic energy above " +
+      text("%.3g", scene_.integration.guards.quasi_static_ratio) + " of the elastic energy, at most " +
+      text("%.3g", guards.largest_ratio()) + " at process time " + text("%.4g s", guards.time_of_largest_ratio()) +
+      "; lower mass_scaling, or raise the damping ratios");
+}
+
 RunSummary Run::whole() {
   try {
     prepare();
@@ -354,6 +351,8 @@ RunSummary Run::whole() {
   results_->consolidate(ResultFile::usual_largest);
   output_seconds_ += watch.seconds();
   report_progress();
+
+  warn_of_motion();
 
   const State& state = sim_->state();
   summary_.wall_seconds = clock_.seconds();
@@ -386,12 +385,13 @@ RunSummary run(const Scene& scene, const RunOptions& options) try {
 }
 
 std::string fingerprint(const Scene& scene) {
-  // FNV-1a over the lines that matter: output settings and title may change between a run and its resumption.
+  // FNV-1a over the lines that matter: output settings, guards and title may change between a run and its
+  // resumption.
   std::uint64_t hash = 14695981039346656037ull;
   std::istringstream lines(scene.effective_text);
   bool counts = true;
   for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("[")) counts = !line.starts_with("[output");
+    if (line.starts_with("[")) counts = !line.starts_with("[output") && !line.starts_with("[guards");
     if (!counts || line.starts_with("title")) continue;
     for (unsigned char c : line + "\n") hash = (hash ^ c) * 1099511628211ull;
   }

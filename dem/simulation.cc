@@ -189,7 +189,10 @@ double Simulation::punch_area() const {
 
 double Simulation::real_mass(std::size_t p) const {
   const Particles& particles = state_.particles;
-  return setup_.materials[particles.material[p]].density * sphere_volume(particles.reference_radius[p]);
+  if (equalised())
+    return setup_.materials[particles.material[p]].density * sphere_volume(particles.reference_radius[p]);
+  const double scaling = state_.inertia_free ? 1.0 : setup_.integration.mass_scaling;
+  return 1 / (particles.body[p].inverse_mass * scaling);
 }
 
 double Simulation::solid_volume() const {
@@ -259,14 +262,6 @@ void Simulation::rebuild_lists() {
   prune_near(0);
 }
 
-void Simulation::require_finite_positions() const {
-  for (std::size_t p = 0; p < state_.particles.size(); ++p)
-    if (!state_.particles.body[p].position.allFinite())
-      throw RunError("the position of particle " + std::to_string(state_.particles.id[p]) +
-                     " is no longer finite at process time " + seconds(state_.time) +
-                     "; the step is too large for the contacts, try a smaller step_safety or mass_scaling");
-}
-
 void Simulation::keep_list_fresh() {
   const bool first_necks =
       setup_.contact.sintering && state_.contacts.neck.empty() && state_.contacts.size() > 0 && table_.any_active();
@@ -276,7 +271,7 @@ void Simulation::keep_list_fresh() {
   if (!rebuilding && (prune || !(may_have_travelled_ < list_slack_))) {
     const double age =
         list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, setup_.integration.threads);
-    if (std::isnan(age)) require_finite_positions();
+    if (std::isnan(age)) require_finite(state_);
     rebuilding = age >= 1;
     if (!rebuilding && prune)
       prune_near(age);
@@ -325,6 +320,13 @@ void Simulation::compute_forces(Recording* record) {
       state_.particles.force[p] += real_mass(p) * setup_.integration.gravity;
 }
 
+GuardView Simulation::guard_view() {
+  double growth = 0;
+  if (state_.last_step > 0)
+    for (double e : expansion_step_) growth = std::max(growth, std::abs(e) / state_.last_step);
+  return {setup_, state_, table_, pass_.near(), pressure(), growth};
+}
+
 StepLimit Simulation::step_limit() {
   const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
   return critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact, state_.walls, punch,
@@ -333,8 +335,15 @@ StepLimit Simulation::step_limit() {
 
 void Simulation::require_stable_step() {
   const double fixed = setup_.integration.fixed_step;
-  if (std::isnan(fixed) || equalised()) return;
+  if (equalised()) return;
   const StepLimit limit = step_limit();
+  constexpr double most_steps = 1e14;  // years, even of two spheres at a tenth of a microsecond a step
+  const double step = std::isnan(fixed) ? setup_.integration.step_safety * limit.critical : fixed;
+  const bool explicit_steps = setup_.integration.method != IntegrationMethod::inertia_free;
+  if (explicit_steps && !((setup_.schedule.end() - state_.time) / step < most_steps))
+    throw InputError("integration.mass_scaling: the process of " + seconds(setup_.schedule.end()) +
+                     " would take more than 1e14 steps of " + seconds(step) +
+                     "; use a larger mass_scaling, or a shorter process");
   if (fixed > limit.critical)
     throw InputError("integration.fixed_step: " + seconds(fixed) + " is above the stability limit of " +
                      seconds(limit.critical) + " (particle " + std::to_string(state_.particles.id[limit.particle]) +
@@ -346,19 +355,34 @@ double Simulation::choose_step() {
   // The viscosity of a young neck grows as a^4, by orders of magnitude in a few steps: its limit m/eta follows at once.
   const bool dashpots = setup_.contact.sintering && setup_.contact.sintering->model == SinteringModel::viscous &&
                         !state_.contacts.neck.empty() && std::isnan(settings.fixed_step);
-  const std::uint64_t interval = dashpots ? 1 : std::uint64_t(settings.limit_interval);
+  // A punch that strikes presses Hertz springs by a tenth of a radius within an interval, and stiffens them as much.
+  const double mean_radius = state_.contacts.skin / settings.skin;
+  constexpr double striking = 3e-3;  // of the mean radius in a step
+  const bool strikes = std::abs(state_.punch.velocity) * state_.last_step > striking * mean_radius;
+  const std::uint64_t interval = dashpots || strikes ? 1 : std::uint64_t(settings.limit_interval);
   if (state_.steps % interval == 0 || state_.stable_step == 0) {
     const StepLimit limit = step_limit();
     state_.critical_step = limit.critical;
+    if (settings.fixed_step > limit.critical && settings.guards.guarding == Guarding::on)
+      throw RunError("integration.fixed_step of " + seconds(settings.fixed_step) +
+                     " has come above the stability limit of " + seconds(limit.critical) + " (particle " +
+                     std::to_string(state_.particles.id[limit.particle]) + "); use a smaller one, or leave it out");
     state_.stable_step = settings.step_safety * limit.critical;
     if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
     if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
     if (state_.punch.mass > 0) state_.punch.tune(limit.punch_stiffness, setup_.container.punch_settings.damping_ratio);
   }
+  double step = state_.stable_step;
+  if (state_.punch.mass > 0 && std::isnan(settings.fixed_step)) {
+    // A jump of the pressure must not throw the punch into the powder between two looks at its contacts.
+    constexpr double leap = 0.01;  // of the mean radius, from rest in a step
+    const double force = state_.walls.normal_force()[*punch_wall_] - pressure() * state_.punch.area;
+    step = std::min(step, std::sqrt(leap * mean_radius * state_.punch.mass / std::abs(force)));
+  }
   // Breakpoints of the schedule are met exactly; the last two steps before one share the way.
   const double left = setup_.schedule.next_breakpoint(state_.time) - state_.time;
-  if (left <= state_.stable_step) return left;
-  return left < 2 * state_.stable_step ? 0.5 * left : state_.stable_step;
+  if (left <= step) return left;
+  return left < 2 * step ? 0.5 * left : step;
 }
 
 void Simulation::plan_equalised_step() {
@@ -417,6 +441,7 @@ void Simulation::evaluate(Recording* record) {
   refresh();
   if (equalised()) plan_equalised_step();
   compute_forces(record);
+  guards_.look(guard_view());
   evaluated_ = true;
 }
 
@@ -438,6 +463,10 @@ void Simulation::drop_inertia() {
 double Simulation::leapfrog_step() {
   const double step = equalised() ? stiffness_.next_step : choose_step();
   if (equalised()) equalise_inertia();
+  if (!(state_.time + step > state_.time))
+    throw RunError("the step of " + seconds(step) + " no longer moves the process time of " + seconds(state_.time) +
+                   " on; the contacts have become too stiff or the masses too small, try "
+                   "a larger mass_scaling");
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   if (state_.punch.mass > 0) {
     const double before = state_.punch.velocity;
@@ -489,6 +518,7 @@ bool Simulation::all_at_equilibrium() const {
 
 void Simulation::restore(State state) {
   evaluated_ = refreshed_ = false;
+  guards_.forget();
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
   table_unsettled_ = true;

@@ -7,6 +7,7 @@
 
 #include "base/schedule.h"
 #include "dem/boundary/punch.h"
+#include "dem/integrate/guards.h"
 #include "dem/integrate/inertia.h"
 #include "dem/integrate/inertia_free.h"
 #include "dem/integrate/step_control.h"
@@ -49,6 +50,7 @@ struct IntegrationSettings {
   double drag = 0;                 ///< mass-proportional damping rate [1/s], for packing
   Vec3 gravity = Vec3::Zero();     ///< [m/s^2]
   int threads = 1;
+  GuardSettings guards;
 };
 
 /// Everything a simulation is made from.
@@ -115,7 +117,8 @@ class Simulation {
 
   /// Limit of the step in the present state [s], before the safety factor.
   StepLimit step_limit();
-  /// Throws InputError when a fixed step is above the present limit.
+  /// Throws InputError when a fixed step is above the present limit, or when the schedule takes more steps than any
+  /// computer will do.
   void require_stable_step();
 
   bool equalised() const { return setup_.integration.inertia == Inertia::equalised && !state_.inertia_free; }
@@ -128,10 +131,15 @@ class Simulation {
   const PairTable& table() const { return table_; }
   /// Replaces the state by a checkpoint's.
   void restore(State state);
+  /// Whoever changes the state breaks its balance of energy, so that the guards begin anew.
   State& mutable_state() {
+    guards_.forget();
     may_have_travelled_ = std::numeric_limits<double>::infinity();
     return state_;
   }
+  /// Throws RunError when the state is not sound, between two looks of the guards: before it is written anywhere.
+  void require_sound() { guards_.require_sound(guard_view()); }
+  const Guards& guards() const { return guards_; }
   void set_gravity(const Vec3& g) { setup_.integration.gravity = g; }
 
   double temperature() const { return setup_.schedule.temperature(state_.time); }
@@ -162,13 +170,14 @@ class Simulation {
   void prune_near(double list_age);
   void set_list_slack(double list_age);
   void note_travel(double fastest, double step);
-  void require_finite_positions() const;
+  GuardView guard_view();
 
   Setup setup_;
   PairTable table_;
   ForcePass pass_;
   InertiaFree inertia_free_;
   State state_;
+  Guards guards_;
   bool refreshed_ = false;       // between refresh() and move()
   bool evaluated_ = false;       // between evaluate() and move()
   bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature

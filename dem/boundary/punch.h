@@ -33,7 +33,9 @@ struct Punch {
 
   /// Leap-frog kick under the powder's outward force and the applied pressure [N, Pa, s].
   void kick(double powder_force, double pressure, double step) {
-    velocity += (powder_force - pressure * area - damping * (velocity - mean_velocity)) / mass * step;
+    // Without contact there is no vibration to still, and a mean that runs ahead would drive the punch.
+    const double damper = powder_force != 0 ? damping * (velocity - mean_velocity) : 0.0;
+    velocity += (powder_force - pressure * area - damper) / mass * step;
     if (memory <= 0) return;
     // Implicit in the filter, so that it is stable for any step: e = v - v_mean, v_mean' = a_mean + 2 e/T, a_mean' =
     // e/T^2.

@@ -19,16 +19,29 @@ double Walls::gap(const Wall& w, const Vec3& x, Vec3& toward_wall) {
   return w.radius - rho;
 }
 
+namespace {
+
+[[noreturn]] void refuse_escape(std::uint32_t id, const Wall& wall) {
+  throw RunError("particle " + std::to_string(id) + " has left the " + wall.name +
+                 ": its centre is beyond the wall; the step or the mass factor is too large, or the wall too soft");
+}
+
+}  // namespace
+
+void Walls::require_inside(const Particles& particles) const {
+  Vec3 n;
+  for (const auto& c : contacts_)
+    if (gap(wall[c.wall], particles.body[c.particle].position, n) < 0)
+      refuse_escape(particles.id[c.particle], wall[c.wall]);
+}
+
 void Walls::rebuild(const Particles& particles, double skin) {
   std::vector<WallContact> fresh;
   Vec3 n;
   for (std::size_t w = 0; w < wall.size(); ++w)
     for (std::size_t p = 0; p < particles.size(); ++p) {
       const double g = gap(wall[w], particles.body[p].position, n);
-      if (g < 0)
-        throw RunError(
-            "particle " + std::to_string(particles.id[p]) + " has left the " + wall[w].name +
-            ": its centre is beyond the wall; the step or the mass factor is too large, or the wall too soft");
+      if (g < 0) refuse_escape(particles.id[p], wall[w]);
       if (g < particles.body[p].radius + skin) fresh.push_back({std::uint32_t(p), std::uint8_t(w), Vec3::Zero()});
     }
   auto less = [](const WallContact& a, const WallContact& b) {
@@ -121,6 +134,24 @@ void Walls::compute(Particles& particles, const PairTable& table, const ContactM
       if (record) record->push_back({c.particle, c.wall, f, g * n, law.spring.energy(in.overlap, in.elastic_radius)});
     });
   }
+}
+
+double Walls::elastic_energy(const Particles& particles, const PairTable& table, const ContactModel& model) const {
+  double sum = 0;
+  Vec3 n;
+  for (const auto& c : contacts_) {
+    const Body& b = particles.body[c.particle];
+    const double g = gap(wall[c.wall], b.position, n);
+    if (g >= b.radius) continue;
+    const NormalInput in = wall_input(b, g, 0, {0, 0});
+    with_wall_law(model, modulus(table, model, particles.material[c.particle]), [&](const auto& law) {
+      sum += law.spring.energy(in.overlap, in.elastic_radius);
+      if (model.friction)
+        sum += 0.5 * model.friction->tangential_stiffness_ratio * law.spring.tangent(in.overlap, in.elastic_radius) *
+               c.tangential.squaredNorm();
+    });
+  }
+  return sum;
 }
 
 void Walls::add_stiffness(const Particles& particles, const PairTable& table, const ContactModel& model,

@@ -62,6 +62,12 @@ class Walls {
   void compute(Particles&, const PairTable&, const ContactModel&, const std::vector<double>& expansion_step, PassTime,
                std::vector<WallRecord>* record, StepStiffness* step_stiffness);
 
+  /// Throws RunError when the centre of a listed particle is beyond its wall.
+  void require_inside(const Particles&) const;
+
+  /// Stored in the springs of all wall contacts, normal and tangential [J].
+  double elastic_energy(const Particles&, const PairTable&, const ContactModel&) const;
+
   /// Share of the skin that wall motion since the last rebuild has used up, on its own.
   double age(double skin) const;
 

@@ -110,6 +110,7 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
 
   StepLimit limit;
   limit.critical = infinity;
+  double stiffest = 0;  // light contact [N/m]
   for (std::size_t p = 0; p < n; ++p) {
     const Body& b = particles.body[p];
     // A particle about to touch must find the step small enough for its first contact.
@@ -117,6 +118,7 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
     const double mass = 1 / b.inverse_mass;
     const Linearisation light = light_contact(model, like, b.radius, mass);
     const Linearisation across = tangential_share(light, model, 0.5 * mass);
+    stiffest = std::max({stiffest, light.stiffness, across.stiffness});
     const double own =
         node_limit(mass, std::max({light.stiffness, across.stiffness, sums.stiffness[p].largest_eigenvalue()}),
                    std::max({light.damper, across.damper, sums.damping[p].largest_eigenvalue()}));
@@ -125,7 +127,9 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
   if (rule == StepRule::thesis) limit.critical = std::min(smallest_pair, limit.critical);
   if (punch.mass > 0) {
     limit.punch_stiffness = walls.stiffness()[punch.wall];
-    limit.critical = std::min(limit.critical, node_limit(punch.mass, limit.punch_stiffness,
+    // The punch of a few particles is lighter than one of them: its first contact, with a rigid plane, is twice as
+    // stiff as theirs.
+    limit.critical = std::min(limit.critical, node_limit(punch.mass, std::max(limit.punch_stiffness, 2 * stiffest),
                                                          walls.damping()[punch.wall] + 0.5 * punch.own_damping));
   }
   return limit;

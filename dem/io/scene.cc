@@ -25,6 +25,7 @@ void visit(Section root, Scene& scene, ScenePlaces& places) {
   read_process(root, scene, places);
   read_loads(root, scene);
   read_integration(root, scene, places);
+  read_guards(root, scene);
   read_output(root, scene);
 }
 
@@ -52,6 +53,8 @@ Scene read(SceneDocument document) {
     scene.places.emplace_back("specimen.packing.green_density", places.packing->where("green_density"));
   if (places.import) scene.places.emplace_back("specimen.import.file", places.import->where("file"));
   if (places.integration) scene.places.emplace_back("integration.fixed_step", places.integration->where("fixed_step"));
+  if (places.integration)
+    scene.places.emplace_back("integration.mass_scaling", places.integration->where("mass_scaling"));
   return scene;
 }
 

@@ -30,6 +30,7 @@ void read_contact(Section& root, Scene&, ScenePlaces&);
 void read_process(Section& root, Scene&, ScenePlaces&);
 void read_loads(Section& root, Scene&);
 void read_integration(Section& root, Scene&, ScenePlaces&);
+void read_guards(Section& root, Scene&);
 void read_output(Section& root, Scene&);
 
 /// What no single part can see: properties the contact model lacks, pressure without a punch, sintering that never

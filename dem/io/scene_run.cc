@@ -1,4 +1,4 @@
-// [process], [[load]], [integration], [output]: what happens, and how it is computed and written.
+// [process], [[load]], [integration], [guards], [output]: what happens, and how it is computed and written.
 
 #include <limits>
 
@@ -91,6 +91,18 @@ void read_integration(Section& root, Scene& scene, ScenePlaces& places) {
     section.vector3("gravity", gravity, dim::acceleration, Need::optional, "acceleration of all particles");
     s.gravity = Vec3(gravity[0], gravity[1], gravity[2]);
   });
+}
+
+void read_guards(Section& root, Scene& scene) {
+  GuardSettings& s = scene.integration.guards;
+  root.section(
+      "guards", Need::defaulted, "what ends a run that is no longer sound, or warns of it", [&](Section& section) {
+        section.quantity("largest_overlap", s.largest_overlap, dim::none,
+                         Range{0.0, 2.0, Bound::exclusive, Bound::inclusive}, Need::optional,
+                         "over the smaller radius; a run ends when two particles are deeper in each other");
+        section.quantity("quasi_static_ratio", s.quasi_static_ratio, dim::none, Range::positive(), Need::optional,
+                         "kinetic over elastic energy above which a loaded specimen is not quasi-static, which warns");
+      });
 }
 
 void read_output(Section& root, Scene& scene) {

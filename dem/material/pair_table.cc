@@ -38,6 +38,10 @@ PairTable::PairTable(std::vector<Material> materials, const std::vector<Interfac
         require(std::isfinite(f.surface_energy), "surface_energy", materials_[a], materials_[b]);
         require(std::isfinite(f.dihedral_angle), "dihedral_angle", materials_[a], materials_[b]);
         require(std::isfinite(f.activation_temperature), "activation_temperature", materials_[a], materials_[b]);
+        if (!(model_.sintering->starting_neck < std::sin(0.5 * f.dihedral_angle)))
+          throw InputError("contact.sintering.starting_neck: not below sin(Psi/2) of \"" + materials_[a].name +
+                           "\" with \"" + materials_[b].name +
+                           "\", the neck at equilibrium over the radius (4.32); lower it, or raise dihedral_angle");
       }
     }
 }
@@ -53,9 +57,14 @@ void PairTable::update(double temperature, double time) {
       if (!model_.sintering) continue;
       p.mobility_factor = 8 * f.diffusion.effective(temperature) / M_PI;
       p.surface_energy = f.surface_energy;
-      p.cap = 4 * (1 - std::cos(0.5 * f.dihedral_angle));
+      p.cap = 8 * std::pow(std::sin(0.25 * f.dihedral_angle), 2);  // 4 (1 - cos(Psi/2)) for small Psi, too
       p.sine = std::sin(0.5 * f.dihedral_angle);
       p.active = temperature >= f.activation_temperature;
+      if (p.active && p.mobility_factor == 0 && model_.sintering->model == SinteringModel::viscous)
+        throw RunError("nothing diffuses between \"" + materials_[a].name + "\" and \"" + materials_[b].name +
+                       "\" at " + std::to_string(temperature) +
+                       " K, so that viscous contacts are rigid; raise activation_temperature, or use model = "
+                       "\"viscoelastic\"");
       double& since = active_since_[index(a, b)];
       if (!p.active)
         since = unset;

@@ -46,5 +46,17 @@ TEST(Punch, ComesToRestOnASpring) {
   EXPECT_LT(std::abs(p.velocity), 1e-6 * load / std::sqrt(1e5 * p.mass));
 }
 
+// Thrown off the powder, without pressure, it flies on as it is: the running mean, still accelerating, must not drive
+// it.
+TEST(Punch, FliesFreelyWithoutContact) {
+  Punch p = punch_on(1e5, 0.3);
+  const double step = 0.05 * std::sqrt(p.mass / 1e5);
+  for (int n = 0; n < 40; ++n) p.kick(1, 0, step);
+  const double thrown = p.velocity;
+  EXPECT_GT(p.mean_acceleration, 0);
+  for (int n = 0; n < 100000; ++n) p.kick(0, 0, step);
+  EXPECT_EQ(p.velocity, thrown);
+}
+
 }  // namespace
 }  // namespace densify::dem

@@ -64,5 +64,5 @@ particle = 1
 force = ["-70 N", "0 N", "0 N"]
 ramp = "0.5 ms"
 TOML
-stops through 'particles 0 and 1 have passed through each other' 'overlap 1.9'
+stops through 'particles 0 and 1 have gone too far into each other' 'overlap 1.5'
 finish

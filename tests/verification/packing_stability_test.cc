@@ -85,6 +85,7 @@ double growth(Body kind, const dem::ContactModel& contact, double step, int step
   fill_periodic(s, Lattice(kind), 2, 2 * radius * 0.999, radius);
   s.integration.skin = 0.1;
   s.integration.fixed_step = step;
+  s.integration.guards.guarding = dem::Guarding::off;
   shake(s.particles, 1e-6 * radius / step, 5);
   Simulation sim(s);
   const double early = kinetic_energy(sim.state().particles);
