@@ -33,7 +33,7 @@ fuzz() {
   code=0
   dictionary=$sources/corpus/$1.dict
   [ -f "$dictionary" ] && dictionary=-dict=$dictionary || dictionary=
-  ASAN_OPTIONS=detect_leaks=1 "$targets/fuzz_$1" $dictionary -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+  ASAN_OPTIONS=detect_leaks=1 "$targets/fuzz_$1" $dictionary -max_total_time="$seconds" -seed=1 -timeout=60 -rss_limit_mb=2048 \
     -max_len=16384 -print_final_stats=1 -artifact_prefix="$findings/$1-" "$work/found/$1" "$work/seeds/$1" \
     >"$work/$1.log" 2>&1 || code=$?
   edges=$(sed -n 's/.*Loaded 1 modules *(\([0-9]*\) inline.*/\1/p' "$work/$1.log" | head -n 1)
