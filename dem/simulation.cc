@@ -157,7 +157,8 @@ Simulation::Simulation(Setup setup)
   state_.walls = Walls(make_walls(setup_.container), setup_.container.material);
   punch_wall_ = wall("punch");
   if (punch_wall_ && setup_.container.punch) {
-    state_.punch.mass = setup_.container.punch_settings.mass_fraction * setup_.integration.mass_scaling * powder_mass;
+    const double fraction = std::max(setup_.container.punch_settings.mass_fraction, 1 / double(n));
+    state_.punch.mass = fraction * setup_.integration.mass_scaling * powder_mass;
     state_.punch.area = punch_area();
   }
   if (equalised()) control_ = step_control(setup_.integration, setup_.schedule);

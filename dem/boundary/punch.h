@@ -7,11 +7,11 @@
 namespace densify::dem {
 
 struct PunchSettings {
-  double mass_fraction = 0.2;  ///< fictitious mass over the scaled mass of the powder
-  double damping_ratio = 0.3;  ///< of the critical damping against its contacts' stiffness
+  double mass_fraction = 0.002;  ///< fictitious mass over the scaled mass of the powder, at least one particle's mean
+  double damping_ratio = 0.1;    ///< of the critical damping against its contacts' stiffness
 };
 
-/// m dv/dt = F_powder - p A - c (v - v_mean).  The damper acts against a running mean of the velocity over some ten
+/// m dv/dt = F_powder - p A - c (v - v_mean).  The damper acts against a running mean of the velocity over two
 /// periods that follows a steady acceleration without lag (a critically damped second-order filter), so that it stills
 /// vibration and takes no share of the load while the powder densifies.
 struct Punch {
@@ -27,7 +27,7 @@ struct Punch {
   void tune(double stiffness, double damping_ratio) {
     if (stiffness <= 0) return;
     damping = 2 * damping_ratio * std::sqrt(mass * stiffness);
-    constexpr double periods = 10;
+    constexpr double periods = 2;
     memory = periods * 2 * std::numbers::pi * std::sqrt(mass / stiffness);
   }
 

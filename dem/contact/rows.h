@@ -113,11 +113,10 @@ inline Columns<width> columns(const Row (&rows)[width]) {
   }
 #else
   static_assert(width == 2);
-  const typename Mask<2>::Vector even{0, 2}, odd{1, 3};
-  out.c[0] = __builtin_shuffle(rows[0].lo, rows[1].lo, even);
-  out.c[1] = __builtin_shuffle(rows[0].lo, rows[1].lo, odd);
-  out.c[2] = __builtin_shuffle(rows[0].hi, rows[1].hi, even);
-  out.c[3] = __builtin_shuffle(rows[0].hi, rows[1].hi, odd);
+  out.c[0] = __builtin_shufflevector(rows[0].lo, rows[1].lo, 0, 2);
+  out.c[1] = __builtin_shufflevector(rows[0].lo, rows[1].lo, 1, 3);
+  out.c[2] = __builtin_shufflevector(rows[0].hi, rows[1].hi, 0, 2);
+  out.c[3] = __builtin_shufflevector(rows[0].hi, rows[1].hi, 1, 3);
 #endif
   return out;
 }
@@ -147,11 +146,10 @@ inline void rows_of(const Columns<width>& in, Row (&rows)[width]) {
     for (int k = 0; k < 4; ++k) rows[k].v = r[k];
   }
 #else
-  const typename Mask<2>::Vector even{0, 2}, odd{1, 3};
-  rows[0].lo = __builtin_shuffle(in.c[0].v, in.c[1].v, even);
-  rows[1].lo = __builtin_shuffle(in.c[0].v, in.c[1].v, odd);
-  rows[0].hi = __builtin_shuffle(in.c[2].v, in.c[3].v, even);
-  rows[1].hi = __builtin_shuffle(in.c[2].v, in.c[3].v, odd);
+  rows[0].lo = __builtin_shufflevector(in.c[0].v, in.c[1].v, 0, 2);
+  rows[1].lo = __builtin_shufflevector(in.c[0].v, in.c[1].v, 1, 3);
+  rows[0].hi = __builtin_shufflevector(in.c[2].v, in.c[3].v, 0, 2);
+  rows[1].hi = __builtin_shufflevector(in.c[2].v, in.c[3].v, 1, 3);
 #endif
 }
 

@@ -257,11 +257,26 @@ ImportedParticles read_lammps_data(const std::filesystem::path& file, double uni
   reader.refuse_file("no section Atoms was found; is this a LAMMPS data file?");
 }
 
+namespace {
+
+/// True for a place that wrapping has brought into the cell; what rounding leaves of one very far away is anywhere.
+bool within(const Cell& cell, const Vec3& x) {
+  constexpr double rounding = 1e-10;  // of an edge
+  const Vec3 s = cell.to_fraction(x);
+  return (s.array() > -rounding).all() && (s.array() < 1 + rounding).all();
+}
+
+}  // namespace
+
 void reject_overlaps(const ImportedParticles& particles, const Cell& cell, double largest_fraction) {
   std::vector<Body> bodies(particles.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     bodies[i].position = cell.periodic ? cell.wrap(particles.position[i]) : particles.position[i];
     bodies[i].radius = particles.radius[i];
+    if (cell.periodic && !within(cell, bodies[i].position))
+      throw InputError(particles.file + ':' + std::to_string(particles.line[i]) +
+                       ": the particle is so far from the periodic cell that its digits do not tell where in the cell "
+                       "it lies; give coordinates near the cell, or check the length unit");
   }
   std::vector<CandidatePair> pairs;
   find_pairs(bodies, cell, 0, pairs);

@@ -197,8 +197,9 @@ void read_walls(Section& root, Scene& scene, ScenePlaces& places) {
           below.choice("control", control, {{"pressure", Control::pressure}, {"fixed", Control::fixed}}, Need::optional,
                        "moves under the pressure of the process, or stands still");
           container.punch = control == Control::pressure;
-          below.quantity("mass_fraction", container.punch_settings.mass_fraction, dim::none, Range::positive(),
-                         Need::optional, "fictitious mass of the punch over the scaled mass of the powder");
+          below.quantity(
+              "mass_fraction", container.punch_settings.mass_fraction, dim::none, Range::positive(), Need::optional,
+              "fictitious mass of the punch over the scaled mass of the powder, at least that of its mean particle");
           below.quantity("damping_ratio", container.punch_settings.damping_ratio, dim::none, Range::non_negative(),
                          Need::optional, "of the critical damping against the contacts of the punch");
         });

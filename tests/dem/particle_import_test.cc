@@ -234,3 +234,17 @@ TEST(RejectOverlaps, SeesPeriodicImages) {
   EXPECT_NO_THROW(reject_overlaps(p, cell, 0.61));
   EXPECT_THROW(reject_overlaps(p, cell, 0.59), InputError);
 }
+
+// 1e57 edges away no digit is left that tells the place in the cell.
+TEST(RejectOverlaps, FarFromTheCell) {
+  ImportedParticles p;
+  p.file = "far.csv";
+  p.position = {Vec3(1, 1, 1), Vec3(5, 1e58, 5)};
+  p.radius = {1, 1};
+  p.line = {2, 3};
+  Cell cell;
+  cell.periodic = true;
+  cell.h = 10 * Mat3::Identity();
+  const std::string got = message([&] { reject_overlaps(p, cell, 0); });
+  EXPECT_NE(got.find("far.csv:3: the particle is so far from the periodic cell"), std::string::npos) << got;
+}

@@ -77,6 +77,7 @@ inline Setup cylinder_packing(int threads) {
   Setup s = common_setup(threads);
   add_lattice(s, {4, 4, 4}, 4e-6, Vec3(-8e-6, -8e-6, 0), 7e-6);
   s.container.shape = ContainerShape::cylinder;
+  s.container.punch_settings.mass_fraction = 0.2;  // steps long enough to reach activation in a few hundred
   s.container.size = Vec3(16.7e-6, 16.7e-6, 16.02e-6);
   s.container.wall_expansion = 5e-6;
   return s;

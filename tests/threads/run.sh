@@ -1,0 +1,15 @@
+#!/bin/sh
+# The tests with several threads under the thread sanitizer (preset `tsan`).  Clang's OpenMP runtime tells the sanitizer
+# through Archer what it orders; without Archer every parallel region would look like a race.
+# usage: run.sh     (builds the two test programs it needs)
+set -eu
+cd "$(dirname "$(readlink -f "$0")")/../.."
+mkdir -p build
+{ cmake --preset tsan && cmake --build build/tsan --target test_dem test_invariance; } >build/tsan.log 2>&1 || {
+  tail -n 40 build/tsan.log
+  exit 1
+}
+export OMP_TOOL_LIBRARIES=/usr/lib/llvm-14/lib/libarcher.so
+export TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1"
+build/tsan/bin/test_dem --gtest_brief=1 --gtest_filter='Kernels.*Threads*:ForcePass*:NearList*:ContactList*:Checkpoint*'
+build/tsan/bin/test_invariance --gtest_brief=1 --gtest_filter='Invariance.Threads:Recording*'
