@@ -21,8 +21,9 @@ void Chunks::build(const ContactList& list, const NearList& near, std::size_t pa
   const auto& places = near.places();
   others_begin_.assign(chunks + 1, 0);
   near_begin_.assign(buckets * chunks + 1, places.size());
-  offsets_i_.resize(places.size());
-  offsets_j_.resize(places.size());
+  // Anew, since a vector that grows by itself takes up to twice what it needs.
+  offsets_i_ = std::vector<std::uint16_t>(places.size());
+  offsets_j_ = std::vector<std::uint32_t>(places.size());
   std::vector<std::vector<std::uint32_t>> others(chunks);
 
   for (std::size_t b = 0; b < buckets; ++b) {
@@ -56,7 +57,7 @@ void Chunks::build(const ContactList& list, const NearList& near, std::size_t pa
   });
 
   for (std::size_t c = 0; c < chunks; ++c) others_begin_[c + 1] = others_begin_[c] + others[c].size();
-  others_.resize(others_begin_[chunks]);
+  others_ = std::vector<std::uint32_t>(others_begin_[chunks]);
   incoming_.assign(chunks, {});
   for (std::size_t c = 0; c < chunks; ++c) {
     const auto& mine = others[c];

@@ -144,7 +144,8 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
   near_.count_pass();
   if (record) record->assign(list.size(), ContactRecord{});
   if (stiffness) stiffness->of.resize(particles.size());
-  for_others_.resize(KeptRow{model_.friction.has_value(), stiffness != nullptr}.size() * chunks_.others().size());
+  const std::size_t kept = KeptRow{model_.friction.has_value(), stiffness != nullptr}.size() * chunks_.others().size();
+  if (for_others_.size() != kept) for_others_ = std::vector<double>(kept);
   const int threads = int(std::min(std::size_t(threads_), chunks_.count()));
   sums_.resize(std::size_t(threads));
   in_parts(std::size_t(threads), threads, [&](std::size_t t, std::size_t) {

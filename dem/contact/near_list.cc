@@ -37,7 +37,6 @@ void NearList::prune(ContactList& list, const Particles& particles, const Cell& 
   skin_ = share_ * list.skin;
   const ImageShifts shifts(cell);
   const Body* const body = particles.body.data();
-  places_.reserve(list.first.capacity());
   places_.resize(list.size());
   bucket_end_.clear();
   std::size_t count = 0;
@@ -54,6 +53,7 @@ void NearList::prune(ContactList& list, const Particles& particles, const Cell& 
     bucket_end_.push_back(count);
   }
   places_.resize(count);
+  places_.shrink_to_fit();
 }
 
 std::size_t NearList::bytes() const {
