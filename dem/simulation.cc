@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/check.h"
 #include "dem/integrate/leapfrog.h"
+#include "dem/state/spatial_order.h"
 
 namespace densify::dem {
 
@@ -36,48 +36,6 @@ std::vector<Wall> make_walls(const Container& c) {
   return walls;
 }
 
-/// The lowest 21 bits of x, each followed by two zeros.
-std::uint64_t spread(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffff;
-  x = (x | x << 16) & 0x1f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
-}
-
-/// Order of the particles along a Morton curve through cells of about one particle, so that neighbours are near in
-/// memory and a range of particles is compact in space.
-std::vector<std::uint32_t> spatial_order(const Particles& particles) {
-  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
-  double mean = 0;
-  for (std::size_t p = 0; p < particles.size(); ++p) {
-    low = low.cwiseMin(particles.body[p].position);
-    high = high.cwiseMax(particles.body[p].position);
-    mean += particles.reference_radius[p] / double(particles.size());
-  }
-  const Vec3 span = (high - low).cwiseMax(mean);
-  const double edge = std::max(2 * mean, span.maxCoeff() / 1e6);
-  auto cell_of = [&](std::uint32_t p) {
-    const Vec3 s = (particles.body[p].position - low) / edge;
-    return spread(std::uint64_t(s[2])) << 2 | spread(std::uint64_t(s[1])) << 1 | spread(std::uint64_t(s[0]));
-  };
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(particles.size());
-  for (std::uint32_t p = 0; p < keyed.size(); ++p) keyed[p] = {cell_of(p), p};
-  std::sort(keyed.begin(), keyed.end());
-  std::vector<std::uint32_t> order(keyed.size());
-  for (std::size_t p = 0; p < order.size(); ++p) order[p] = keyed[p].second;
-  return order;
-}
-
-template <class T>
-void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
-  if (values.empty()) return;
-  std::vector<T> sorted(values.size());
-  for (std::size_t p = 0; p < order.size(); ++p) sorted[p] = values[order[p]];
-  values = std::move(sorted);
-}
-
 bool activation_has_begun(const PairTable& table) {
   for (std::uint8_t a = 0; a < table.materials(); ++a)
     for (std::uint8_t b = a; b < table.materials(); ++b)
@@ -85,28 +43,11 @@ bool activation_has_begun(const PairTable& table) {
   return false;
 }
 
-std::string seconds(double t) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g s", t);
-  return text;
-}
-
 double sphere_volume(double r) {
   return 4.0 / 3 * M_PI * r * r * r;
 }
 
 }  // namespace
-
-StepControl step_control(const IntegrationSettings& settings, const Schedule& schedule) {
-  constexpr double share_of_process = 1e-3, span = 20, share_of_peak = 0.01;
-  StepControl c;
-  c.measure = settings.inertia_measure;
-  c.largest_step = std::isnan(settings.largest_step) ? share_of_process * schedule.end() : settings.largest_step;
-  c.smallest_step = std::isnan(settings.smallest_step) ? c.largest_step / span : settings.smallest_step;
-  for (const Stage& stage : schedule.stages())
-    c.pressure_floor = std::max(c.pressure_floor, share_of_peak * stage.end_pressure);
-  return c;
-}
 
 Simulation::Simulation(Setup setup)
     : setup_(std::move(setup)),
@@ -189,6 +130,7 @@ double Simulation::punch_area() const {
 
 double Simulation::real_mass(std::size_t p) const {
   const Particles& particles = state_.particles;
+  // Where the step makes the masses they tell nothing; a packing's own masses are not those of its material.
   if (equalised())
     return setup_.materials[particles.material[p]].density * sphere_volume(particles.reference_radius[p]);
   const double scaling = state_.inertia_free ? 1.0 : setup_.integration.mass_scaling;
@@ -327,108 +269,6 @@ GuardView Simulation::guard_view() {
   return {setup_, state_, table_, pass_.near(), pressure(), growth};
 }
 
-StepLimit Simulation::step_limit() {
-  const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
-  return critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact, state_.walls, punch,
-                       {state_.time, state_.last_step}, setup_.integration.rule);
-}
-
-void Simulation::require_stable_step() {
-  const double fixed = setup_.integration.fixed_step;
-  if (equalised()) return;
-  const StepLimit limit = step_limit();
-  constexpr double most_steps = 1e14;  // years, even of two spheres at a tenth of a microsecond a step
-  const double step = std::isnan(fixed) ? setup_.integration.step_safety * limit.critical : fixed;
-  const bool explicit_steps = setup_.integration.method != IntegrationMethod::inertia_free;
-  if (explicit_steps && !((setup_.schedule.end() - state_.time) / step < most_steps))
-    throw InputError("integration.mass_scaling: the process of " + seconds(setup_.schedule.end()) +
-                     " would take more than 1e14 steps of " + seconds(step) +
-                     "; use a larger mass_scaling, or a shorter process");
-  if (fixed > limit.critical)
-    throw InputError("integration.fixed_step: " + seconds(fixed) + " is above the stability limit of " +
-                     seconds(limit.critical) + " (particle " + std::to_string(state_.particles.id[limit.particle]) +
-                     "); use a smaller one, a larger mass_scaling, or leave it out");
-}
-
-double Simulation::choose_step() {
-  const auto& settings = setup_.integration;
-  // The viscosity of a young neck grows as a^4, by orders of magnitude in a few steps: its limit m/eta follows at once.
-  const bool dashpots = setup_.contact.sintering && setup_.contact.sintering->model == SinteringModel::viscous &&
-                        !state_.contacts.neck.empty() && std::isnan(settings.fixed_step);
-  // A punch that strikes presses Hertz springs by a tenth of a radius within an interval, and stiffens them as much.
-  const double mean_radius = state_.contacts.skin / settings.skin;
-  constexpr double striking = 3e-3;  // of the mean radius in a step
-  const bool strikes = std::abs(state_.punch.velocity) * state_.last_step > striking * mean_radius;
-  const std::uint64_t interval = dashpots || strikes ? 1 : std::uint64_t(settings.limit_interval);
-  if (state_.steps % interval == 0 || state_.stable_step == 0) {
-    const StepLimit limit = step_limit();
-    state_.critical_step = limit.critical;
-    if (settings.fixed_step > limit.critical && settings.guards.guarding == Guarding::on)
-      throw RunError("integration.fixed_step of " + seconds(settings.fixed_step) +
-                     " has come above the stability limit of " + seconds(limit.critical) + " (particle " +
-                     std::to_string(state_.particles.id[limit.particle]) + "); use a smaller one, or leave it out");
-    state_.stable_step = settings.step_safety * limit.critical;
-    if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
-    if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
-    if (state_.punch.mass > 0) state_.punch.tune(limit.punch_stiffness, setup_.container.punch_settings.damping_ratio);
-  }
-  double step = state_.stable_step;
-  if (state_.punch.mass > 0 && std::isnan(settings.fixed_step)) {
-    // A jump of the pressure must not throw the punch into the powder between two looks at its contacts.
-    constexpr double leap = 0.01;  // of the mean radius, from rest in a step
-    const double force = state_.walls.normal_force()[*punch_wall_] - pressure() * state_.punch.area;
-    step = std::min(step, std::sqrt(leap * mean_radius * state_.punch.mass / std::abs(force)));
-  }
-  // Breakpoints of the schedule are met exactly; the last two steps before one share the way.
-  const double left = setup_.schedule.next_breakpoint(state_.time) - state_.time;
-  if (left <= step) return left;
-  return left < 2 * step ? 0.5 * left : step;
-}
-
-void Simulation::plan_equalised_step() {
-  const auto& settings = setup_.integration;
-  if (state_.stable_step == 0) {
-    state_.stable_step = std::isnan(settings.fixed_step) ? control_.smallest_step : settings.fixed_step;
-    // The first pass needs masses for its dampers.
-    stiffness_.next_step = state_.stable_step;
-    stiffness_.of.assign(state_.particles.size(), StiffnessSum{});
-    equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety, 0, settings.threads);
-  }
-  state_.critical_step = state_.stable_step / settings.step_safety;
-  // Breakpoints of the schedule are met exactly: the last steps before one share the way.
-  constexpr double sharing = 10;
-  const double left = setup_.schedule.next_breakpoint(state_.time) - state_.time;
-  const double steps = std::max(1.0, std::ceil(left / state_.stable_step * (1 - 1e-12)));
-  stiffness_.next_step = steps <= sharing ? left / steps : state_.stable_step;
-}
-
-Column Simulation::column() const {
-  const double bottom = state_.walls.wall[*wall("bottom")].point[2];
-  return {bottom, state_.walls.wall[*punch_wall_].point[2] - bottom};
-}
-
-void Simulation::equalise_inertia() {
-  const auto& settings = setup_.integration;
-  if (state_.last_step > 0 && stiffness_.next_step > state_.last_step * (1 + 1e-9))
-    calm(state_.particles, state_.last_step / stiffness_.next_step);
-  Punch& punch = state_.punch;
-  equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety,
-           punch.mass > 0 ? carriage_share : 0.0, settings.threads);
-  if (punch.mass > 0) {
-    const double k = column_stiffness(state_.particles, stiffness_, column());
-    // Its own damper has one end in the world and counts half as much as one between two masses.
-    const double with_damper = (1 + 1 / carriage_share) * k + 2 * punch.damping / stiffness_.next_step;
-    const double mass = 0.5 * mass_for_step(with_damper, stiffness_.next_step, settings.step_safety);
-    if (mass > 0) punch.mass = mass;
-    punch.tune(k, setup_.container.punch_settings.damping_ratio);
-  }
-  if (state_.steps % control_interval != 0) return;
-  const double pressure = std::max(contact_pressure(state_.particles, stiffness_), control_.pressure_floor);
-  measure_inertia(state_.control, state_.particles, state_.cell, pressure);
-  if (std::isnan(settings.fixed_step))
-    state_.stable_step = controlled_step(control_, state_.control, state_.stable_step);
-}
-
 void Simulation::refresh() {
   if (refreshed_) return;
   set_environment();
@@ -463,10 +303,7 @@ void Simulation::drop_inertia() {
 double Simulation::leapfrog_step() {
   const double step = equalised() ? stiffness_.next_step : choose_step();
   if (equalised()) equalise_inertia();
-  if (!(state_.time + step > state_.time))
-    throw RunError("the step of " + seconds(step) + " no longer moves the process time of " + seconds(state_.time) +
-                   " on; the contacts have become too stiff or the masses too small, try "
-                   "a larger mass_scaling");
+  if (!(state_.time + step > state_.time)) refuse_idle_step(step);
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   if (state_.punch.mass > 0) {
     const double before = state_.punch.velocity;

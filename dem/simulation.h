@@ -160,6 +160,7 @@ class Simulation {
   void keep_list_fresh();
   void compute_forces(Recording* record);
   double choose_step();
+  [[noreturn]] void refuse_idle_step(double step) const;
   bool moves_without_inertia() const;
   void drop_inertia();
   double leapfrog_step();

@@ -136,21 +136,29 @@ void Walls::compute(Particles& particles, const PairTable& table, const ContactM
   }
 }
 
-double Walls::elastic_energy(const Particles& particles, const PairTable& table, const ContactModel& model) const {
-  double sum = 0;
+template <class Visit>
+void Walls::each_touching(const Particles& particles, const PairTable& table, const ContactModel& model,
+                          Visit&& visit) const {
   Vec3 n;
   for (const auto& c : contacts_) {
     const Body& b = particles.body[c.particle];
     const double g = gap(wall[c.wall], b.position, n);
     if (g >= b.radius) continue;
     const NormalInput in = wall_input(b, g, 0, {0, 0});
-    with_wall_law(model, modulus(table, model, particles.material[c.particle]), [&](const auto& law) {
-      sum += law.spring.energy(in.overlap, in.elastic_radius);
-      if (model.friction)
-        sum += 0.5 * model.friction->tangential_stiffness_ratio * law.spring.tangent(in.overlap, in.elastic_radius) *
-               c.tangential.squaredNorm();
-    });
+    with_wall_law(model, modulus(table, model, particles.material[c.particle]),
+                  [&](const auto& law) { visit(c, n, in, law); });
   }
+}
+
+double Walls::elastic_energy(const Particles& particles, const PairTable& table, const ContactModel& model) const {
+  double sum = 0;
+  each_touching(particles, table, model,
+                [&](const WallContact& c, const Vec3&, const NormalInput& in, const auto& law) {
+                  sum += law.spring.energy(in.overlap, in.elastic_radius);
+                  if (model.friction)
+                    sum += 0.5 * model.friction->tangential_stiffness_ratio *
+                           law.spring.tangent(in.overlap, in.elastic_radius) * c.tangential.squaredNorm();
+                });
   return sum;
 }
 
@@ -158,20 +166,14 @@ void Walls::add_stiffness(const Particles& particles, const PairTable& table, co
                           std::vector<StiffnessSum>& stiffness, std::vector<StiffnessSum>& damping) {
   stiffness_.assign(wall.size(), 0);
   damping_.assign(wall.size(), 0);
-  Vec3 n;
-  for (const auto& c : contacts_) {
-    const Body& b = particles.body[c.particle];
-    const double g = gap(wall[c.wall], b.position, n);
-    if (g >= b.radius) continue;
-    const NormalInput in = wall_input(b, g, 0, {0, 0});
-    with_wall_law(model, modulus(table, model, particles.material[c.particle]), [&](const auto& law) {
-      const Linearisation l = law.linearise(in), across = tangential_share(l, model, in.reduced_mass);
-      stiffness[c.particle].add(l.stiffness, across.stiffness, n);
-      damping[c.particle].add(l.damper, across.damper, n);
-      stiffness_[c.wall] += l.stiffness;
-      damping_[c.wall] += l.damper;
-    });
-  }
+  each_touching(particles, table, model,
+                [&](const WallContact& c, const Vec3& n, const NormalInput& in, const auto& law) {
+                  const Linearisation l = law.linearise(in), across = tangential_share(l, model, in.reduced_mass);
+                  stiffness[c.particle].add(l.stiffness, across.stiffness, n);
+                  damping[c.particle].add(l.damper, across.damper, n);
+                  stiffness_[c.wall] += l.stiffness;
+                  damping_[c.wall] += l.damper;
+                });
 }
 
 }  // namespace densify::dem

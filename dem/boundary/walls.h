@@ -94,6 +94,10 @@ class Walls {
   const std::vector<Wall>& reference() const { return reference_; }
 
  private:
+  /// Calls visit(contact, normal, input, law) for every particle that touches a wall, at rest.
+  template <class Visit>
+  void each_touching(const Particles&, const PairTable&, const ContactModel&, Visit&&) const;
+
   WallMaterial material_;
   std::vector<WallContact> contacts_;
   std::vector<Wall> reference_;  // walls when the contacts were listed

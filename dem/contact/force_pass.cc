@@ -37,13 +37,7 @@ void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cel
     const auto& named = list.buckets[b];
     const PairProperties& row = table.row(named.material_a, named.material_b);
     Bucket& bucket = buckets_[b];
-    with_spring(model_, row, [&](const auto& spring) {
-      using Spring = std::decay_t<decltype(spring)>;
-      if (necks)
-        bucket.law = make_sintering<Spring>(model_, row);
-      else
-        bucket.law = KelvinVoigt<Spring>{spring, model_.damping_ratio};
-    });
+    with_law(model_, row, necks, [&](const auto& law) { bucket.law = law; });
     bucket.job = {near_.places().data(),
                   chunks_.slots().data(),
                   list.first.data(),

@@ -105,6 +105,15 @@ decltype(auto) with_spring(const ContactModel& m, const PairProperties& p, Visit
                                             : visit(make_spring<HertzSpring>(m, p));
 }
 
+/// Calls visit(law) with the law of a pair: of loose particles, or one with necks where the list holds any.
+template <class Visit>
+decltype(auto) with_law(const ContactModel& m, const PairProperties& p, bool necks, Visit&& visit) {
+  return with_spring(m, p, [&](const auto& spring) -> decltype(auto) {
+    using Spring = std::decay_t<decltype(spring)>;
+    return necks ? visit(make_sintering<Spring>(m, p)) : visit(KelvinVoigt<Spring>{spring, m.damping_ratio});
+  });
+}
+
 /// Radius of the Hertz stiffness of two spheres [m].
 inline double elastic_radius(const ContactModel& m, double ri, double rj) {
   return (m.hertz_radius == HertzRadius::equivalent ? 2 : 1) * ri * rj / (ri + rj);

@@ -110,13 +110,7 @@ inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int c
   const Columns<width> rate = columns<width>(rates);
   pair.velocity = {rate.c[0], rate.c[1], rate.c[2]};
   pair.inverse_masses = rate.c[3];
-  if (job.gradient) {
-    const double* const g = job.gradient;
-    const Triple& x = pair.branch;
-    pair.velocity.x = pair.velocity.x + (g[0] * x.x + g[3] * x.y + g[6] * x.z);
-    pair.velocity.y = pair.velocity.y + (g[1] * x.x + g[4] * x.y + g[7] * x.z);
-    pair.velocity.z = pair.velocity.z + (g[2] * x.x + g[5] * x.y + g[8] * x.z);
-  }
+  if (job.gradient) add_flow(pair, job.gradient);
   if (needs_radii<Law> || friction || job.growing) {
     pair.radius_i = gather(job.body, block.i, 8, 3);
     pair.radius_j = gather(job.body, block.j, 8, 3);

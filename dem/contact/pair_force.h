@@ -16,13 +16,13 @@ inline constexpr bool has_necks =
 template <class Law>
 inline constexpr bool needs_radii = !std::is_same_v<Law, KelvinVoigt<LinearSpring>>;
 
-/// Tangent of the law's normal spring [N/m].
-template <class T, class Law>
-T spring_tangent(const Law& law, const T& overlap, const T& radius) {
+/// The law's normal spring.
+template <class Law>
+[[gnu::always_inline]] inline const auto& spring_of(const Law& law) {
   if constexpr (has_necks<Law>)
-    return law.loose.spring.tangent(overlap, radius);
+    return law.loose.spring;
   else
-    return law.spring.tangent(overlap, radius);
+    return law.spring;
 }
 
 /// What is the same for all pairs of a bucket.
@@ -41,6 +41,15 @@ struct PairOf {
   T inverse_masses;      ///< 1/m_i + 1/m_j [1/kg]
   T radius_i, radius_j;  ///< only where the law needs them or heat makes particles grow [m]
 };
+
+/// Adds the flow L x of a cell with the velocity gradient L, by columns, to the velocity between the two.
+template <class T>
+void add_flow(PairOf<T>& pair, const double* l) {
+  const TripleOf<T>& x = pair.branch;
+  pair.velocity.x = pair.velocity.x + (l[0] * x.x + l[3] * x.y + l[6] * x.z);
+  pair.velocity.y = pair.velocity.y + (l[1] * x.x + l[4] * x.y + l[7] * x.z);
+  pair.velocity.z = pair.velocity.z + (l[2] * x.x + l[5] * x.y + l[8] * x.z);
+}
 
 /// Geometry of a pair and the input of its normal law.
 template <class T>
@@ -105,7 +114,7 @@ FrictionOf<T> friction_of(const Law& law, const PairUniform& uniform, const Pair
   const TangentialInputOf<T> in{n,
                                 pair.velocity - frame.approach * n - cross(spin, n),
                                 share * larger(T(0.0), normal.sintering - normal.total),
-                                spring_tangent(law, frame.in.overlap, frame.in.elastic_radius),
+                                spring_of(law).tangent(frame.in.overlap, frame.in.elastic_radius),
                                 frame.in.reduced_mass,
                                 uniform.step};
   FrictionOf<T> f;
@@ -130,8 +139,9 @@ StiffnessOf<T> stiffness_of(const Law& law, const PairUniform& uniform, const Fr
                             const NormalForceOf<T>& normal, const T& along, double next_step) {
   T across = 0.0;
   if constexpr (friction)
-    across = tangential_step_stiffness(uniform.friction, spring_tangent(law, frame.in.overlap, frame.in.elastic_radius),
-                                       frame.in.reduced_mass, next_step);
+    across =
+        tangential_step_stiffness(uniform.friction, spring_of(law).tangent(frame.in.overlap, frame.in.elastic_radius),
+                                  frame.in.reduced_mass, next_step);
   const TripleOf<T>& n = frame.normal;
   const TripleOf<T> m = (along - across) * n;
   return {across + m.x * n.x,

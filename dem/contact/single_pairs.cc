@@ -16,14 +16,6 @@ void put(double* row, const Triple& v) {
   row[0] = v.x, row[1] = v.y, row[2] = v.z, row[3] = 0;
 }
 
-template <class Law>
-const auto& spring_of(const Law& law) {
-  if constexpr (has_necks<Law>)
-    return law.loose.spring;
-  else
-    return law.spring;
-}
-
 /// What one pair gives to i and j, rows as in KernelJob::sums.
 struct Given {
   double i[8] = {}, j[8] = {}, stiffness[8] = {};
@@ -77,12 +69,7 @@ bool pair(const KernelJob& job, std::size_t near, Given& given, ContactRecord* r
     return false;
   }
   pair.velocity = triple(b + 4) - triple(a + 4);
-  if (const double* const g = job.gradient) {
-    const Triple& x = pair.branch;
-    pair.velocity.x = pair.velocity.x + (g[0] * x.x + g[3] * x.y + g[6] * x.z);
-    pair.velocity.y = pair.velocity.y + (g[1] * x.x + g[4] * x.y + g[7] * x.z);
-    pair.velocity.z = pair.velocity.z + (g[2] * x.x + g[5] * x.y + g[8] * x.z);
-  }
+  if (job.gradient) add_flow(pair, job.gradient);
   FrameOf<double> frame = frame_of(law, job.uniform, pair, d2);
   if (job.growing) {
     const bool swapped = job.material[i] != job.material_a;

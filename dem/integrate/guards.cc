@@ -104,13 +104,7 @@ std::size_t add_bucket(const Law& law, const GuardView& view, std::size_t first,
     if (reach - d > limit * smaller) return k;
     double u = d - reach;
     const double radius = elastic_radius(model, a.radius, b.radius);
-    const auto& spring = [&]() -> const auto& {
-      if constexpr (has_necks<Law>)
-        return law.loose.spring;
-      else
-        return law.spring;
-    }
-    ();
+    const auto& spring = spring_of(law);
     bool springs = true;
     if constexpr (has_necks<Law>) {
       const NeckHistory& h = list.neck[k];
@@ -146,14 +140,8 @@ EnergySums add_contacts(const GuardView& view) {
     const auto& bucket = s.contacts.buckets[b];
     const PairProperties& row = view.table.row(bucket.material_a, bucket.material_b);
     std::size_t deep = s.contacts.size();
-    auto add = [&](const auto& law) { deep = add_bucket(law, view, b == 0 ? 0 : ends[b - 1], ends[b], shifts, sums); };
-    with_spring(model, row, [&](const auto& spring) {
-      using Spring = std::decay_t<decltype(spring)>;
-      if (s.contacts.neck.empty())
-        add(KelvinVoigt<Spring>{spring, model.damping_ratio});
-      else
-        add(make_sintering<Spring>(model, row));
-    });
+    with_law(model, row, !s.contacts.neck.empty(),
+             [&](const auto& law) { deep = add_bucket(law, view, b == 0 ? 0 : ends[b - 1], ends[b], shifts, sums); });
     if (deep == s.contacts.size()) continue;
     throw RunError("particles " + std::to_string(s.particles.id[s.contacts.i(deep)]) + " and " +
                    std::to_string(s.particles.id[s.contacts.j(deep)]) + " have gone too far into each other (overlap " +

@@ -94,16 +94,9 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
   double smallest_pair = infinity;
   for (const auto& bucket : list.buckets) {
     const PairProperties& row = table.row(bucket.material_a, bucket.material_b);
-    auto add = [&](const auto& law) {
+    with_law(model, row, !list.neck.empty(), [&](const auto& law) {
       smallest_pair =
           std::min(smallest_pair, add_bucket(law, list, bucket, particles, shifts, model, clock.time, rule, sums));
-    };
-    with_spring(model, row, [&](const auto& spring) {
-      using Spring = std::decay_t<decltype(spring)>;
-      if (list.neck.empty())
-        add(KelvinVoigt<Spring>{spring, model.damping_ratio});
-      else
-        add(make_sintering<Spring>(model, row));
     });
   }
   walls.add_stiffness(particles, table, model, sums.stiffness, sums.damping);

@@ -59,13 +59,8 @@ void visit_contacts(const ContactWorld& w, double reach, Visit&& visit) {
   const ImageShifts shifts(w.cell);
   for (const auto& bucket : w.list.buckets) {
     const PairProperties& row = w.table.row(bucket.material_a, bucket.material_b);
-    with_spring(w.model, row, [&](const auto& spring) {
-      using Spring = std::decay_t<decltype(spring)>;
-      if (w.list.neck.empty())
-        detail::visit_bucket(w, bucket, shifts, KelvinVoigt<Spring>{spring, w.model.damping_ratio}, reach, visit);
-      else
-        detail::visit_bucket(w, bucket, shifts, make_sintering<Spring>(w.model, row), reach, visit);
-    });
+    with_law(w.model, row, !w.list.neck.empty(),
+             [&](const auto& law) { detail::visit_bucket(w, bucket, shifts, law, reach, visit); });
   }
   std::vector<double> moduli;
   if (!w.walls.contacts().empty())

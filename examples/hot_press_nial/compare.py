@@ -58,6 +58,13 @@ class Case:
         mean = np.average(self.history["punch_pressure_mean_Pa"][rows], weights=span)
         return float(mean / self.history["pressure_Pa"][self.ends[first]])
 
+    def punch_rows(self):
+        """From two minutes after loading to the end of cooling: number of rows, of those more than 1 % off, worst share."""
+        time = np.asarray(self.history["time_s"])
+        rows = (time > time[self.ends[0]] + 120) & (time <= time[self.ends[6]])
+        off = np.abs(self.history["punch_pressure_mean_Pa"][rows] / self.history["pressure_Pa"][rows] - 1)
+        return len(off), int(np.sum(off > 0.01)), float(np.max(off))
+
 
 def measured(process):
     with open(HERE / MEASURED[process], encoding="utf-8") as file:
@@ -81,13 +88,14 @@ def print_densities(cases):
 
 def print_state(cases):
     print("\n| case | coordination at 1 / 5 | necks at equilibrium at 5 / end | largest overlap at 5 [r] "
-          "| punch pressure / applied, heating and hold | cooling |")
-    print("|---" * 6 + "|")
+          "| punch pressure / applied, heating and hold | cooling | rows off by 1 %, worst |")
+    print("|---" * 7 + "|")
     for name, case in cases.items():
+        rows, off, worst = case.punch_rows()
         z, eq = case.at_ends("coordination_number"), case.at_ends("neck_equilibrium_fraction")
         print(f"| {name} | {z[1]:.2f} / {z[5]:.2f} | {100 * eq[5]:.0f} % / {100 * eq[-1]:.0f} % "
               f"| {case.at_ends('largest_overlap')[5]:.2f} | {case.punch_mean(1, 5):.4f} "
-              f"| {case.punch_mean(6, 6):.4f} |")
+              f"| {case.punch_mean(6, 6):.4f} | {off} of {rows}, {100 * worst:.1f} % |")
 
 
 def print_cost(cases):

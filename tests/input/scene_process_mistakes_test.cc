@@ -129,3 +129,8 @@ TEST(SceneMistakes, SceneThatIsNotThere) {
     EXPECT_STREQ(e.what(), "no/such/scene.toml: there is no such scene file");
   }
 }
+
+TEST(SceneMistakes, OverlapOfMoreThanTheWholeParticle) {
+  EXPECT_EQ(mistake_added("[guards]\nlargest_overlap = 2.5\n"),
+            "scene.toml:39: guards.largest_overlap: must be > 0 and <= 2, found 2.5");
+}
