@@ -21,7 +21,9 @@ void Chunks::build(const ContactList& list, const NearList& near, std::size_t pa
   const auto& places = near.places();
   others_begin_.assign(chunks + 1, 0);
   near_begin_.assign(buckets * chunks + 1, places.size());
-  slots_.resize(places.size());
+  // Anew, since a vector that grows by itself takes up to twice what it needs.
+  offsets_i_ = std::vector<std::uint16_t>(places.size());
+  offsets_j_ = std::vector<std::uint32_t>(places.size());
   std::vector<std::vector<std::uint32_t>> others(chunks);
 
   for (std::size_t b = 0; b < buckets; ++b) {
@@ -44,15 +46,18 @@ void Chunks::build(const ContactList& list, const NearList& near, std::size_t pa
       for (std::size_t b = 0; b < buckets; ++b)
         for (std::size_t n = near_begin(b, c); n < near_end(b, c); ++n) {
           const std::uint32_t j = list.j(places[n]);
-          slots_[n] = j >= own && j < beyond
-                          ? j - own
-                          : beyond - own + std::uint32_t(std::lower_bound(mine.begin(), mine.end(), j) - mine.begin());
+          const std::uint32_t slot =
+              j >= own && j < beyond
+                  ? j - own
+                  : beyond - own + std::uint32_t(std::lower_bound(mine.begin(), mine.end(), j) - mine.begin());
+          offsets_i_[n] = std::uint16_t(8 * (list.i(places[n]) - own));
+          offsets_j_[n] = 8 * slot;
         }
     }
   });
 
   for (std::size_t c = 0; c < chunks; ++c) others_begin_[c + 1] = others_begin_[c] + others[c].size();
-  others_.resize(others_begin_[chunks]);
+  others_ = std::vector<std::uint32_t>(others_begin_[chunks]);
   incoming_.assign(chunks, {});
   for (std::size_t c = 0; c < chunks; ++c) {
     const auto& mine = others[c];
@@ -68,7 +73,8 @@ void Chunks::build(const ContactList& list, const NearList& near, std::size_t pa
 }
 
 std::size_t Chunks::bytes() const {
-  std::size_t b = (slots_.capacity() + others_.capacity()) * sizeof(std::uint32_t) +
+  std::size_t b = offsets_i_.capacity() * sizeof(std::uint16_t) +
+                  (offsets_j_.capacity() + others_.capacity()) * sizeof(std::uint32_t) +
                   (near_begin_.capacity() + others_begin_.capacity()) * sizeof(std::size_t);
   for (const auto& i : incoming_) b += i.capacity() * sizeof(Incoming) + sizeof(i);
   return b;

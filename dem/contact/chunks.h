@@ -31,8 +31,9 @@ class Chunks {
   std::size_t near_end(std::size_t bucket, std::size_t chunk) const {
     return near_begin_[bucket * count() + chunk + 1];
   }
-  /// Of each near pair: place of j among the sums of the chunk, its own particles first.
-  const std::vector<std::uint32_t>& slots() const { return slots_; }
+  /// Of each near pair: 8 x the place of i and of j among the sums of the chunk, its own particles first.
+  const std::vector<std::uint16_t>& offsets_i() const { return offsets_i_; }
+  const std::vector<std::uint32_t>& offsets_j() const { return offsets_j_; }
 
   /// The sums for others of all chunks, one after another: of which particle, and where a chunk's begin.
   const std::vector<std::uint32_t>& others() const { return others_; }
@@ -45,7 +46,8 @@ class Chunks {
  private:
   std::size_t particles_ = 0;
   std::vector<std::size_t> near_begin_;
-  std::vector<std::uint32_t> slots_, others_;
+  std::vector<std::uint16_t> offsets_i_;
+  std::vector<std::uint32_t> offsets_j_, others_;
   std::vector<std::size_t> others_begin_;
   std::vector<std::vector<Incoming>> incoming_;
 };

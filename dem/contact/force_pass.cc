@@ -31,36 +31,39 @@ void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cel
   const bool deforming = cell.periodic && !cell.velocity_gradient.isZero(0);
   const bool necks = !list.neck.empty(), hertz = model_.elasticity == Elasticity::hertz;
   const std::size_t stride = (model_.friction ? 8 : 4) + (stiffness ? 8 : 0);
+  const FrictionModel model = model_.friction.value_or(FrictionModel{});
+  const Friction friction(model, model.coefficient);
   const SinglePairs singles = single_pairs(necks, hertz, model_.friction.has_value());
-  buckets_.resize(list.buckets.size());
-  for (std::size_t b = 0; b < buckets_.size(); ++b) {
-    const auto& named = list.buckets[b];
+  buckets_.clear();
+  buckets_.reserve(list.buckets.size());  // jobs point to their laws
+  for (const auto& named : list.buckets) {
     const PairProperties& row = table.row(named.material_a, named.material_b);
-    Bucket& bucket = buckets_[b];
-    with_law(model_, row, necks, [&](const auto& law) { bucket.law = law; });
-    bucket.job = {near_.places().data(),
-                  chunks_.slots().data(),
-                  list.first.data(),
-                  list.second.data(),
-                  list.tangential.empty() ? nullptr : list.tangential[0].data(),
-                  list.neck.data(),
-                  particles.body[0].position.data(),
-                  particles.angular_velocity.empty() ? nullptr : particles.angular_velocity[0].data(),
-                  particles.material.data(),
-                  cell.periodic ? shifts_.data() : nullptr,
-                  deforming ? cell.velocity_gradient.data() : nullptr,
-                  growth(named.material_a) != 0 || growth(named.material_b) != 0,
-                  growth(named.material_a),
-                  growth(named.material_b),
-                  named.material_a,
-                  std::visit([](const auto& law) -> const void* { return &law; }, bucket.law),
-                  {model_.friction.value_or(FrictionModel{}), model_.hertz_radius == HertzRadius::equivalent,
-                   clock.step, clock.time},
-                  nullptr,
-                  stride,
-                  0,
-                  stiffness ? stiffness->next_step : 0.0,
-                  singles.general};
+    Law law;
+    with_law(model_, row, necks, [&](const auto& l) { law = l; });
+    buckets_.push_back({{near_.places().data(),
+                         chunks_.offsets_i().data(),
+                         chunks_.offsets_j().data(),
+                         list.second.data(),
+                         list.tangential.empty() ? nullptr : list.tangential[0].data(),
+                         list.neck.data(),
+                         particles.body[0].position.data(),
+                         particles.angular_velocity.empty() ? nullptr : particles.angular_velocity[0].data(),
+                         particles.material.data(),
+                         shifts_.data(),
+                         deforming ? cell.velocity_gradient.data() : nullptr,
+                         growth(named.material_a) != 0 || growth(named.material_b) != 0,
+                         growth(named.material_a),
+                         growth(named.material_b),
+                         named.material_a,
+                         nullptr,
+                         {friction, model_.hertz_radius == HertzRadius::equivalent, clock.step, clock.time},
+                         nullptr,
+                         stride,
+                         0,
+                         stiffness ? stiffness->next_step : 0.0,
+                         singles.general},
+                        law});
+    buckets_.back().job.law = std::visit([](const auto& l) -> const void* { return &l; }, buckets_.back().law);
   }
 }
 
@@ -72,8 +75,9 @@ struct KeptRow {
 
   std::size_t size() const { return 3 + (rotates ? 3 : 0) + (stiffens ? 7 : 0); }
   void keep(const double* row, double* kept) const {
-    kept = std::copy_n(row, 3, kept);
-    if (rotates) kept = std::copy_n(row + 4, 3, kept);
+    for (int k = 0; k < 3; ++k) *kept++ = row[k];
+    if (rotates)
+      for (int k = 4; k < 7; ++k) *kept++ = row[k];
     if (stiffens) std::copy_n(row + (rotates ? 8 : 4), 7, kept);
   }
 };
@@ -131,9 +135,11 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
                         const std::vector<double>& expansion_step, PassTime clock, std::vector<ContactRecord>* record,
                         StepStiffness* stiffness) {
   prepare(particles, list, cell, table, expansion_step, clock, stiffness);
+  near_.count_pass();
   if (record) record->assign(list.size(), ContactRecord{});
   if (stiffness) stiffness->of.resize(particles.size());
-  for_others_.resize(KeptRow{model_.friction.has_value(), stiffness != nullptr}.size() * chunks_.others().size());
+  const std::size_t kept = KeptRow{model_.friction.has_value(), stiffness != nullptr}.size() * chunks_.others().size();
+  if (for_others_.size() != kept) for_others_ = std::vector<double>(kept);
   const int threads = int(std::min(std::size_t(threads_), chunks_.count()));
   sums_.resize(std::size_t(threads));
   in_parts(std::size_t(threads), threads, [&](std::size_t t, std::size_t) {

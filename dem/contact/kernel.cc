@@ -3,7 +3,7 @@
 
 #include "dem/contact/kernel.h"
 
-#include "dem/contact/lanes.h"
+#include "dem/contact/rows.h"
 
 namespace densify::dem::DENSIFY_ISA {
 
@@ -14,34 +14,24 @@ using Numbers = Lanes<width>;
 using Condition = Mask<width>;
 using Triple = TripleOf<Numbers>;
 
-/// A block of near pairs; lanes beyond `count` repeat the last.
+constexpr int index_bits = 27;  // as ContactList
+constexpr std::uint32_t index_mask = (1u << index_bits) - 1;
+
+/// The near pairs of a block, one a lane.
 struct Block {
-  std::uint32_t place[width], i[width], j[width], code[width], slot_i[width], slot_j[width];
+  const std::uint32_t* place;
+  const std::uint16_t* offset_i;
+  const std::uint32_t* offset_j;
 };
 
-inline void read_block(const KernelJob& job, std::size_t at, int count, Block& block) {
-  constexpr std::uint32_t index_bits = 27, index_mask = (1u << index_bits) - 1;  // as ContactList
-  for (int l = 0; l < width; ++l) {
-    const std::size_t n = at + std::size_t(l < count ? l : count - 1);
-    const std::uint32_t k = job.place[n], coded = job.second[k];
-    block.place[l] = k;
-    block.i[l] = job.first[k];
-    block.j[l] = coded & index_mask;
-    block.code[l] = coded >> index_bits;
-    block.slot_i[l] = block.i[l] - job.first_particle;
-    block.slot_j[l] = job.slot[n];
-  }
-}
-
-inline Numbers gather(const double* base, const std::uint32_t (&index)[width], int stride, int offset) {
+/// One number of each body i.
+inline Numbers gather_i(const double* bodies, const Block& block, int offset) {
   Numbers out;
-  for (int l = 0; l < width; ++l) out.v[l] = base[std::size_t(index[l]) * std::size_t(stride) + std::size_t(offset)];
+  for (int l = 0; l < width; ++l) out.v[l] = bodies[block.offset_i[l] + offset];
   return out;
 }
 
-inline Triple rows3(const double* base, const std::uint32_t (&index)[width]) {
-  Row rows[width];
-  for (int l = 0; l < width; ++l) rows[l] = Row::load3(base + 3 * std::size_t(index[l]));
+inline Triple triple_of(const Row (&rows)[width]) {
   const Columns<width> c = columns<width>(rows);
   return {c.c[0], c.c[1], c.c[2]};
 }
@@ -49,7 +39,7 @@ inline Triple rows3(const double* base, const std::uint32_t (&index)[width]) {
 /// Relative growth rates of the radii of i and j [1/s].
 inline void growth_rates(const KernelJob& job, const Block& block, Numbers& of_i, Numbers& of_j) {
   for (int l = 0; l < width; ++l) {
-    const bool swapped = job.material[block.i[l]] != job.material_a;
+    const bool swapped = job.material[job.first_particle + block.offset_i[l] / 8] != job.material_a;
     of_i.v[l] = swapped ? job.growth_b : job.growth_a;
     of_j.v[l] = swapped ? job.growth_a : job.growth_b;
   }
@@ -81,22 +71,44 @@ inline Necks read_necks(const Law& law, const KernelJob& job, const Block& block
   return n;
 }
 
-template <class Law, bool friction>
-inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int count) {
-  Block block;
-  read_block(job, at, count, block);
+/// What the rows of the bodies of a block say of its pairs.
+struct Place {
+  Columns<width> place, rate;  ///< x y z of x_j - x_i and r_i + r_j; v_j - v_i and 1/m_i + 1/m_j
+  Numbers radius_i;
+};
 
-  Row rows[width], rates[width];
+/// What a block adds to the sums of its particles.
+struct Result {
+  Columns<width> force, couple, stiffness[2];
+  Numbers lever_i, lever_j;  ///< times the couple: torque of i and of j
+  unsigned general;          ///< lanes that the general law has to do
+};
+
+inline std::uint32_t particle_j(const KernelJob& job, const Block& block, int l) {
+  return job.second[block.place[l]] & index_mask;
+}
+
+template <class Law, bool friction>
+inline void find(const KernelJob& job, const Block& block, Place& found) {
+  const double* const own = job.body + 8 * std::size_t(job.first_particle);
+  Record bodies[width];
   for (int l = 0; l < width; ++l) {
-    const double *a = job.body + 8 * std::size_t(block.i[l]), *b = job.body + 8 * std::size_t(block.j[l]);
-    rows[l] = Row::load(b) + Row::load(a).opposite();  // x_j - x_i and r_j + r_i
-    if (job.shift) rows[l] = rows[l] + Row::load(job.shift + 4 * block.code[l]);
-    rates[l] = Row::load(b + 4) + Row::load(a + 4).opposite();
+    const std::uint32_t coded = job.second[block.place[l]];
+    bodies[l] = Record::between(own + block.offset_i[l], job.body + 8 * std::size_t(coded & index_mask),
+                                job.shift + 4 * std::size_t(coded >> index_bits));
   }
+  columns(bodies, found.place, found.rate);
+  if (needs_radii<Law> || friction || job.growing) found.radius_i = gather_i(own, block, 3);
+}
+
+/// `plain`: no growth, no deforming cell, no stiffness sums.
+template <class Law, bool friction, bool plain>
+inline void act(const Law& law, const KernelJob& job, const Block& block, const Place& found, Result& result) {
   PairOf<Numbers> pair;
-  const Columns<width> place = columns<width>(rows);
-  pair.branch = {place.c[0], place.c[1], place.c[2]};
-  pair.reach = place.c[3];
+  pair.branch = {found.place.c[0], found.place.c[1], found.place.c[2]};
+  pair.reach = found.place.c[3];
+  pair.velocity = {found.rate.c[0], found.rate.c[1], found.rate.c[2]};
+  pair.inverse_masses = found.rate.c[3];
   const Numbers d2 = dot(pair.branch, pair.branch);
   Condition present = d2 < pair.reach * pair.reach;
   Necks necks;
@@ -104,19 +116,13 @@ inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int c
     necks = read_necks(law, job, block);
     present = present | necks.necked;
   }
-  if constexpr (!friction)
-    if (!any(present)) return;
-
-  const Columns<width> rate = columns<width>(rates);
-  pair.velocity = {rate.c[0], rate.c[1], rate.c[2]};
-  pair.inverse_masses = rate.c[3];
-  if (job.gradient) add_flow(pair, job.gradient);
-  if (needs_radii<Law> || friction || job.growing) {
-    pair.radius_i = gather(job.body, block.i, 8, 3);
-    pair.radius_j = gather(job.body, block.j, 8, 3);
+  if (!plain && job.gradient) add_flow(pair, job.gradient);
+  if (needs_radii<Law> || friction || (!plain && job.growing)) {
+    pair.radius_i = found.radius_i;
+    pair.radius_j = pair.reach - pair.radius_i;
   }
   FrameOf<Numbers> frame = frame_of(law, job.uniform, pair, d2);
-  if (job.growing) {
+  if (!plain && job.growing) {
     Numbers of_i, of_j, growth;
     growth_rates(job, block, of_i, of_j);
     if constexpr (has_necks<Law>)
@@ -127,7 +133,7 @@ inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int c
   }
 
   NormalForceOf<Numbers> normal;
-  unsigned general = 0;  // lanes that the general law has to do
+  unsigned general = 0;
   NeckOf<Numbers> neck;
   if constexpr (has_necks<Law>) {
     neck = {necks.column.c[0], necks.column.c[1]};
@@ -140,31 +146,31 @@ inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int c
 
   const Numbers none = 0.0;
   Triple force = select(present, normal.total * frame.normal, Triple{none, none, none});
-  Row torque_i[width], torque_j[width];
-  Row slips[width];
   if constexpr (friction) {
-    const Numbers lever_i = pair.radius_i + 0.5 * frame.in.overlap, lever_j = pair.radius_j + 0.5 * frame.in.overlap;
-    const Triple spin = lever_i * rows3(job.spin, block.i) + lever_j * rows3(job.spin, block.j);
-    Triple slip = rows3(job.tangential, block.place);
+    Row rows[width];
+    for (int l = 0; l < width; ++l)
+      rows[l] = Row::load3(job.spin + 3 * (job.first_particle + std::size_t(block.offset_i[l]) / 8));
+    const Triple spin_i = triple_of(rows);
+    for (int l = 0; l < width; ++l) rows[l] = Row::load3(job.spin + 3 * std::size_t(particle_j(job, block, l)));
+    const Triple spin_j = triple_of(rows);
+    for (int l = 0; l < width; ++l) rows[l] = Row::load3(job.tangential + 3 * std::size_t(block.place[l]));
+    Triple slip = triple_of(rows);
+    result.lever_i = pair.radius_i + 0.5 * frame.in.overlap;
+    result.lever_j = pair.radius_j + 0.5 * frame.in.overlap;
+    const Triple spin = result.lever_i * spin_i + result.lever_j * spin_j;
     Condition sliding_contact = present;
     if constexpr (has_necks<Law>) sliding_contact = present & necks.phase.loose;
-    FrictionOf<Numbers> f =
+    const FrictionOf<Numbers> f =
         friction_of(law, job.uniform, pair, frame, normal, spin, select(sliding_contact, Numbers(1.0), none), slip);
     force = force + f.force;
-    Row couples[width];
-    rows_of<width>({f.couple.x, f.couple.y, f.couple.z, none}, couples);
-    for (int l = 0; l < width; ++l) {
-      torque_i[l] = Row::all(lever_i.v[l]) * couples[l];
-      torque_j[l] = Row::all(lever_j.v[l]) * couples[l];
-    }
-    rows_of<width>({slip.x, slip.y, slip.z, none}, slips);
+    result.couple = {f.couple.x, f.couple.y, f.couple.z, none};
+    rows_of<width>({slip.x, slip.y, slip.z, none}, rows);
+    for (int l = 0; l < width; ++l)
+      if (!has_necks<Law> || !(general >> l & 1)) rows[l].store3(job.tangential + 3 * std::size_t(block.place[l]));
   }
-  Row force_i[width], force_j[width];
-  rows_of<width>({force.x, force.y, force.z, none}, force_i);
-  for (int l = 0; l < width; ++l) force_j[l] = force_i[l].opposite();
+  result.force = {force.x, force.y, force.z, none};
 
-  Row stiff[2][width];
-  if (job.next_step > 0) {
+  if (!plain && job.next_step > 0) {
     Numbers along;
     if constexpr (has_necks<Law>)
       along = law.step_stiffness(frame.in, neck, necks.phase, job.next_step);
@@ -172,64 +178,124 @@ inline void do_block(const Law& law, const KernelJob& job, std::size_t at, int c
       along = law.step_stiffness(frame.in, job.next_step);
     const auto s = stiffness_of<friction>(law, job.uniform, frame, normal, along, job.next_step);
     const auto present_only = [&](const Numbers& x) { return select(present, x, none); };
-    rows_of<width>({present_only(s.xx), present_only(s.yy), present_only(s.zz), present_only(s.xy)}, stiff[0]);
-    rows_of<width>({present_only(s.xz), present_only(s.yz), present_only(s.force), none}, stiff[1]);
+    result.stiffness[0] = {present_only(s.xx), present_only(s.yy), present_only(s.zz), present_only(s.xy)};
+    result.stiffness[1] = {present_only(s.xz), present_only(s.yz), present_only(s.force), none};
   }
-
   if constexpr (has_necks<Law>) {
     Row after[width];
     rows_of<width>({neck.radius, neck.elastic, necks.column.c[2], necks.column.c[3]}, after);
     const unsigned stores = bits(present) & ~general;
     for (int l = 0; l < width; ++l)
-      if (l < count && (stores >> l & 1)) after[l].store(reinterpret_cast<double*>(job.neck + block.place[l]));
+      if (stores >> l & 1) after[l].store(reinterpret_cast<double*>(job.neck + block.place[l]));
+    result.general = general;
   }
-  if constexpr (friction)
-    for (int l = 0; l < width; ++l)
-      if (l < count && !(general >> l & 1)) slips[l].store3(job.tangential + 3 * std::size_t(block.place[l]));
-  if constexpr (has_necks<Law>) {
-    if (general != 0) {
-      for (int l = 0; l < width; ++l) {
-        if (l >= count || !(general >> l & 1)) continue;
-        double of_i[8], of_j[8], stiffness[8];
-        job.general(job, at + std::size_t(l), of_i, of_j, stiffness);
-        stiff[0][l] = Row::load(stiffness);
-        stiff[1][l] = Row::load(stiffness + 4);
-        force_i[l] = Row::load(of_i);
-        force_j[l] = Row::load(of_j);
-        if constexpr (friction) {
-          torque_i[l] = Row::load(of_i + 4);
-          torque_j[l] = Row::load(of_j + 4);
-        }
-      }
+}
+
+/// Sums of one pair: force, or force and torque.
+template <bool friction>
+using Sum = std::conditional_t<friction, Record, Row>;
+
+template <bool friction>
+struct Given {
+  Sum<friction> i[width], j[width];
+  Row stiffness[2][width];
+};
+
+/// Does the general law's lanes among the others, so that sums keep the order of the pairs.
+template <bool friction>
+[[gnu::noinline]] void replace_by_general(const KernelJob& job, std::size_t at, unsigned general,
+                                          Given<friction>& given) {
+  for (int l = 0; l < width; ++l) {
+    if (!(general >> l & 1)) continue;
+    double of_i[8], of_j[8], stiffness[8];
+    job.general(job, at + std::size_t(l), of_i, of_j, stiffness);
+    given.i[l] = Sum<friction>::load(of_i);
+    given.j[l] = Sum<friction>::load(of_j);
+    given.stiffness[0][l] = Row::load(stiffness);
+    given.stiffness[1][l] = Row::load(stiffness + 4);
+  }
+}
+
+/// `at` is the place of the first in the near list; lanes beyond `count` repeat the last.
+template <bool necks, bool friction, bool plain>
+inline void add(const KernelJob& job, const Block& block, const Result& result, std::size_t at, int count) {
+  Given<friction> given;
+  if constexpr (friction) {
+    Record records[width];
+    records_of(result.force, result.couple, records);
+    double lever[2][width];
+    result.lever_i.store(lever[0]);
+    result.lever_j.store(lever[1]);
+    for (int l = 0; l < width; ++l) {
+      given.i[l] = records[l].last_times(lever[0][l]);
+      given.j[l] = records[l].opposite_last_times(lever[1][l]);
     }
+  } else {
+    rows_of<width>(result.force, given.i);
+    for (int l = 0; l < width; ++l) given.j[l] = given.i[l].opposite();
   }
-  const std::size_t stride = job.stride;
+  if (!plain && job.next_step > 0)
+    for (int k = 0; k < 2; ++k) rows_of<width>(result.stiffness[k], given.stiffness[k]);
+  if constexpr (necks)
+    if (const unsigned general = result.general & ((1u << count) - 1); general != 0)
+      replace_by_general(job, at, general, given);
+  const std::size_t stride = plain ? (friction ? 8 : 4) : job.stride;
   for (int l = 0; l < width; ++l) {
     if (l >= count) break;
-    double *const i = job.sums + stride * block.slot_i[l], *const j = job.sums + stride * block.slot_j[l];
-    (Row::load(i) + force_i[l]).store(i);
-    if constexpr (friction) (Row::load(i + 4) + torque_i[l]).store(i + 4);
-    (Row::load(j) + force_j[l]).store(j);
-    if constexpr (friction) (Row::load(j + 4) + torque_j[l]).store(j + 4);
-  }
-  if (job.next_step > 0)
-    for (int l = 0; l < width; ++l) {
-      if (l >= count) break;
-      for (const std::uint32_t slot : {block.slot_i[l], block.slot_j[l]}) {
-        double* const sum = job.sums + stride * slot + (friction ? 8 : 4);
-        (Row::load(sum) + stiff[0][l]).store(sum);
-        (Row::load(sum + 4) + stiff[1][l]).store(sum + 4);
-      }
+    double* const i = job.sums + stride * block.offset_i[l] / 8;
+    double* const j = job.sums + stride * block.offset_j[l] / 8;
+    (Sum<friction>::load(i) + given.i[l]).store(i);
+    (Sum<friction>::load(j) + given.j[l]).store(j);
+    if (plain || !(job.next_step > 0)) continue;
+    for (double* const sum : {i, j}) {
+      double* const s = sum + (friction ? 8 : 4);
+      (Row::load(s) + given.stiffness[0][l]).store(s);
+      (Row::load(s + 4) + given.stiffness[1][l]).store(s + 4);
     }
+  }
+}
+
+/// In three short loops over a few blocks: one long loop fills the processor's window with one block, which then waits
+/// for its own roots and divisions.
+template <class Law, bool friction, bool plain>
+[[gnu::flatten]] void run_pairs(const KernelJob& shared, std::size_t begin, std::size_t end) {
+  constexpr int blocks = 32 / width;
+  const KernelJob job = shared;  // nothing that the loops store can change it
+  const Law law = *static_cast<const Law*>(job.law);
+  Place found[blocks];
+  Result result[blocks];
+  const auto batch = [&](const Block& first, std::size_t at, int count) {
+    const auto block = [&](int b) {
+      return Block{first.place + b * width, first.offset_i + b * width, first.offset_j + b * width};
+    };
+    const int used = (count + width - 1) / width;
+    for (int b = 0; b < used; ++b) find<Law, friction>(job, block(b), found[b]);
+    for (int b = 0; b < used; ++b) act<Law, friction, plain>(law, job, block(b), found[b], result[b]);
+    for (int b = 0; b < used; ++b) {
+      const int left = count - b * width;
+      add<has_necks<Law>, friction, plain>(job, block(b), result[b], at + std::size_t(b) * width,
+                                           left < width ? left : width);
+    }
+  };
+  constexpr int most = blocks * width;
+  std::size_t at = begin;
+  for (; at + most <= end; at += most) batch({job.place + at, job.offset_i + at, job.offset_j + at}, at, most);
+  if (at == end) return;
+  std::uint32_t places[most], offsets_j[most];
+  std::uint16_t offsets_i[most];
+  for (int l = 0; l < most; ++l) {
+    const std::size_t n = at + std::size_t(l) < end ? at + std::size_t(l) : end - 1;
+    places[l] = job.place[n], offsets_i[l] = job.offset_i[n], offsets_j[l] = job.offset_j[n];
+  }
+  batch({places, offsets_i, offsets_j}, at, int(end - at));
 }
 
 template <class Law, bool friction>
-[[gnu::flatten]] void run(const KernelJob& shared, std::size_t begin, std::size_t end) {
-  const KernelJob job = shared;  // nothing that the loop stores can change it
-  const Law law = *static_cast<const Law*>(job.law);
-  std::size_t at = begin;
-  for (; at + width <= end; at += width) do_block<Law, friction>(law, job, at, width);
-  if (at < end) do_block<Law, friction>(law, job, at, int(end - at));
+void run(const KernelJob& job, std::size_t begin, std::size_t end) {
+  if (job.gradient || job.growing || job.next_step > 0)
+    run_pairs<Law, friction, false>(job, begin, end);
+  else
+    run_pairs<Law, friction, true>(job, begin, end);
 }
 
 }  // namespace

@@ -11,10 +11,11 @@ namespace densify::dem {
 /// The near pairs of one bucket in one chunk of the particles, and everything they read and write.
 struct KernelJob {
   // Near pairs:
-  const std::uint32_t* place;  ///< in the contact list
-  const std::uint32_t* slot;   ///< of j in the chunk's sums
+  const std::uint32_t* place;     ///< in the contact list
+  const std::uint16_t* offset_i;  ///< 8 x the place of i among the particles of the chunk
+  const std::uint32_t* offset_j;  ///< 8 x the place of j among the sums of the chunk
   // Contact list:
-  const std::uint32_t *first, *second;
+  const std::uint32_t* second;
   double* tangential;  ///< 3 a pair
   NeckHistory* neck;
   // Particles:
@@ -22,7 +23,7 @@ struct KernelJob {
   const double* spin;  ///< 3 a particle
   const std::uint8_t* material;
   // Uniform:
-  const double* shift;     ///< 4 an image code (x y z 0); null in a cell that is not periodic
+  const double* shift;     ///< 4 an image code (x y z 0)
   const double* gradient;  ///< velocity gradient by columns; null in a cell that does not deform
   bool growing;
   double growth_a, growth_b;  ///< relative growth rate of the radii of both materials since the last pass [1/s]

@@ -1,4 +1,4 @@
-// Lanes of several doubles, rows of four in memory, and the turn between them.
+// Lanes of several doubles; rows.h has the turns between lanes and rows of memory.
 //
 // Only for contact/kernel.cc, which is compiled once for each instruction set: DENSIFY_ISA names the namespace, so that
 // no function compiled for one processor is ever linked into code for another.  Every operation is the IEEE one of each
@@ -35,6 +35,8 @@ struct Lanes {
   Lanes() = default;
   Lanes(double x) : v(x - Vector{}) {}  // the same in every lane
   Lanes(const Vector& x) : v(x) {}
+
+  void store(double* p) const { std::memcpy(p, &v, sizeof v); }
 
   friend Lanes operator+(const Lanes& a, const Lanes& b) { return a.v + b.v; }
   friend Lanes operator-(const Lanes& a, const Lanes& b) { return a.v - b.v; }
@@ -86,132 +88,6 @@ inline unsigned bits(const Mask<width>& m) {
 template <int width>
 inline bool any(const Mask<width>& m) {
   return bits(m) != 0;
-}
-
-#if defined(__AVX__)
-/// Four doubles in a row of memory.
-struct Row {
-  typedef double Vector __attribute__((vector_size(32)));
-  Vector v;
-
-  static Row load(const double* p) {
-    Row r;
-    std::memcpy(&r, p, sizeof r);
-    return r;
-  }
-  /// x y z and 0.
-  static Row load3(const double* p) { return {Vector(_mm256_maskload_pd(p, _mm256_setr_epi64x(-1, -1, -1, 0)))}; }
-  void store(double* p) const { std::memcpy(p, this, sizeof *this); }
-  void store3(double* p) const {
-    _mm_storeu_pd(p, _mm256_castpd256_pd128(v));
-    _mm_store_sd(p + 2, _mm256_extractf128_pd(v, 1));
-  }
-  static Row all(double x) { return {x - Vector{}}; }
-  friend Row operator+(const Row& a, const Row& b) { return {a.v + b.v}; }
-  friend Row operator-(const Row& a, const Row& b) { return {a.v - b.v}; }
-  friend Row operator*(const Row& a, const Row& b) { return {a.v * b.v}; }
-  /// The first three with the other sign.
-  Row opposite() const { return {Vector(_mm256_xor_pd(v, _mm256_setr_pd(-0.0, -0.0, -0.0, 0.0)))}; }
-};
-#else
-struct Row {
-  typedef double Half __attribute__((vector_size(16)));
-  Half lo, hi;
-
-  static Row load(const double* p) {
-    Row r;
-    std::memcpy(&r.lo, p, sizeof r.lo);  // by halves, so that no compiler moves the row through memory
-    std::memcpy(&r.hi, p + 2, sizeof r.hi);
-    return r;
-  }
-  static Row load3(const double* p) {
-    Row r;
-    std::memcpy(&r.lo, p, sizeof r.lo);
-    r.hi = Half{p[2], 0};
-    return r;
-  }
-  void store(double* p) const {
-    std::memcpy(p, &lo, sizeof lo);
-    std::memcpy(p + 2, &hi, sizeof hi);
-  }
-  void store3(double* p) const {
-    std::memcpy(p, &lo, sizeof lo);
-    p[2] = hi[0];
-  }
-  static Row all(double x) { return {x - Half{}, x - Half{}}; }
-  friend Row operator+(const Row& a, const Row& b) { return {a.lo + b.lo, a.hi + b.hi}; }
-  friend Row operator-(const Row& a, const Row& b) { return {a.lo - b.lo, a.hi - b.hi}; }
-  friend Row operator*(const Row& a, const Row& b) { return {a.lo * b.lo, a.hi * b.hi}; }
-  Row opposite() const {
-#if defined(__SSE2__)
-    return {Half(_mm_xor_pd(lo, _mm_set1_pd(-0.0))), Half(_mm_xor_pd(hi, _mm_setr_pd(-0.0, 0.0)))};
-#else
-    return {-lo, Half{-hi[0], hi[1]}};
-#endif
-  }
-};
-#endif
-
-/// Four lanes: the columns of as many rows as there are lanes.
-template <int width>
-struct Columns {
-  Lanes<width> c[4];
-};
-
-#if defined(__AVX__)
-inline void turn(const Row::Vector (&r)[4], Row::Vector (&c)[4]) {
-  const __m256d a = _mm256_unpacklo_pd(r[0], r[1]), b = _mm256_unpackhi_pd(r[0], r[1]);
-  const __m256d d = _mm256_unpacklo_pd(r[2], r[3]), e = _mm256_unpackhi_pd(r[2], r[3]);
-  c[0] = _mm256_permute2f128_pd(a, d, 0x20);
-  c[1] = _mm256_permute2f128_pd(b, e, 0x20);
-  c[2] = _mm256_permute2f128_pd(a, d, 0x31);
-  c[3] = _mm256_permute2f128_pd(b, e, 0x31);
-}
-#endif
-
-template <int width>
-inline Columns<width> columns(const Row (&rows)[width]) {
-  Columns<width> out;
-#if defined(__AVX__)
-  Row::Vector c[width / 4][4];
-  for (int part = 0; part < width / 4; ++part) {
-    const Row* const r = rows + 4 * part;
-    turn({r[0].v, r[1].v, r[2].v, r[3].v}, c[part]);
-  }
-  for (int k = 0; k < 4; ++k) {
-    if constexpr (width == 4) out.c[k].v = c[0][k];
-    if constexpr (width == 8) out.c[k].v = __builtin_shufflevector(c[0][k], c[1][k], 0, 1, 2, 3, 4, 5, 6, 7);
-  }
-#else
-  static_assert(width == 2);
-  out.c[0] = __builtin_shufflevector(rows[0].lo, rows[1].lo, 0, 2);
-  out.c[1] = __builtin_shufflevector(rows[0].lo, rows[1].lo, 1, 3);
-  out.c[2] = __builtin_shufflevector(rows[0].hi, rows[1].hi, 0, 2);
-  out.c[3] = __builtin_shufflevector(rows[0].hi, rows[1].hi, 1, 3);
-#endif
-  return out;
-}
-
-template <int width>
-inline void rows_of(const Columns<width>& in, Row (&rows)[width]) {
-#if defined(__AVX__)
-  for (int part = 0; part < width / 4; ++part) {
-    Row::Vector c[4], r[4];
-    for (int k = 0; k < 4; ++k) {
-      if constexpr (width == 4) c[k] = in.c[k].v;
-      if constexpr (width == 8)
-        c[k] = part == 0 ? __builtin_shufflevector(in.c[k].v, in.c[k].v, 0, 1, 2, 3)
-                         : __builtin_shufflevector(in.c[k].v, in.c[k].v, 4, 5, 6, 7);
-    }
-    turn(c, r);
-    for (int k = 0; k < 4; ++k) rows[4 * part + k].v = r[k];
-  }
-#else
-  rows[0].lo = __builtin_shufflevector(in.c[0].v, in.c[1].v, 0, 2);
-  rows[1].lo = __builtin_shufflevector(in.c[0].v, in.c[1].v, 1, 3);
-  rows[0].hi = __builtin_shufflevector(in.c[2].v, in.c[3].v, 0, 2);
-  rows[1].hi = __builtin_shufflevector(in.c[2].v, in.c[3].v, 1, 3);
-#endif
 }
 
 }  // namespace densify::dem::DENSIFY_ISA

@@ -8,10 +8,18 @@ namespace densify::dem {
 
 namespace {
 
-// Of the list's skin.  Smaller: fewer pairs in a pass, more prunings (half a pass each).
-constexpr double share_of_skin = 0.25;
+// The near skin is halved when a pruning served many passes, since fewer pairs then cost less, and doubled when it
+// served few: a pruning costs about as much as two passes.
+constexpr std::uint64_t few_passes = 100, many_passes = 400;
+constexpr double largest_share = 0.25, smallest_share = 0.25 / 16;  // of the list's skin
 
 }  // namespace
+
+void NearList::clear() {
+  const double share = share_;
+  *this = NearList();
+  share_ = share;
+}
 
 void NearList::take_all(const ContactList& list) {
   content_ = Content::all;
@@ -22,11 +30,13 @@ void NearList::take_all(const ContactList& list) {
 }
 
 void NearList::prune(ContactList& list, const Particles& particles, const Cell& cell) {
+  if (content_ == Content::pruned && passes_ > many_passes) share_ = std::max(0.5 * share_, smallest_share);
+  if (content_ == Content::pruned && passes_ < few_passes) share_ = std::min(2 * share_, largest_share);
   content_ = Content::pruned;
-  skin_ = share_of_skin * list.skin;
+  passes_ = 0;
+  skin_ = share_ * list.skin;
   const ImageShifts shifts(cell);
   const Body* const body = particles.body.data();
-  places_.reserve(list.first.capacity());
   places_.resize(list.size());
   bucket_end_.clear();
   std::size_t count = 0;
@@ -43,6 +53,7 @@ void NearList::prune(ContactList& list, const Particles& particles, const Cell& 
     bucket_end_.push_back(count);
   }
   places_.resize(count);
+  places_.shrink_to_fit();
 }
 
 std::size_t NearList::bytes() const {

@@ -23,8 +23,8 @@ class ImageShifts {
 
 class NearList {
  public:
-  /// Forgets everything and gives its memory back, for a rebuild of the contact list.
-  void clear() { *this = NearList(); }
+  /// Forgets the pairs and gives their memory back, for a rebuild of the contact list.
+  void clear();
   bool empty() const { return content_ == Content::nothing; }
 
   /// All pairs of the list, good for as long as the list is.
@@ -33,6 +33,9 @@ class NearList {
   /// The pairs that are closer than touching + skin() and those with a neck, in the order of the list.  A pair left out
   /// loses its friction spring, as every pair does that does not touch.
   void prune(ContactList&, const Particles&, const Cell&);
+
+  /// To be called in every pass: prunings that serve many make the skin smaller.
+  void count_pass() { ++passes_; }
 
   /// How far the surfaces of two particles may approach after prune() until it must be pruned again [m].
   double skin() const { return skin_; }
@@ -49,7 +52,9 @@ class NearList {
   Content content_ = Content::nothing;
   std::vector<std::uint32_t> places_;
   std::vector<std::size_t> bucket_end_;
-  double skin_ = 0;
+  double skin_ = 0;           // [m]
+  double share_ = 0.25;       // of the list's skin
+  std::uint64_t passes_ = 0;  // since prune()
 };
 
 }  // namespace densify::dem

@@ -27,7 +27,7 @@ template <class Law>
 
 /// What is the same for all pairs of a bucket.
 struct PairUniform {
-  FrictionModel friction;
+  Friction friction;
   bool equivalent_radius;  ///< Hertz with 2 r_i r_j/(r_i + r_j)
   double step, time;       ///< [s]
 };
@@ -39,7 +39,7 @@ struct PairOf {
   TripleOf<T> velocity;  ///< v_j - v_i, with the flow of a deforming cell [m/s]
   T reach;               ///< r_i + r_j [m]
   T inverse_masses;      ///< 1/m_i + 1/m_j [1/kg]
-  T radius_i, radius_j;  ///< only where the law needs them or heat makes particles grow [m]
+  T radius_i, radius_j;  ///< only where law or friction needs them or heat makes particles grow [m]
 };
 
 /// Adds the flow L x of a cell with the velocity gradient L, by columns, to the velocity between the two.
@@ -59,17 +59,18 @@ struct FrameOf {
   NormalInputOf<T> in;
 };
 
-/// `d2` is the square of the branch.  What does not depend on the distance has divisions of its own, so that the roots
-/// of distance and damper do not wait for each other.
+/// `d2` is the square of the branch.  One division serves all inverses, and it does not wait for the root.
 template <class Law, class T>
 FrameOf<T> frame_of(const Law& law, const PairUniform& uniform, const PairOf<T>& pair, const T& d2) {
   FrameOf<T> f;
   NormalInputOf<T>& in = f.in;
-  const T d = root(d2), inverse_distance = 1.0 / d;
+  const T d = root(d2);
+  T inverse_d2;
   if constexpr (needs_radii<Law>) {
-    const T inverse = 1.0 / (pair.inverse_masses * pair.reach);
-    in.reduced_mass = inverse * pair.reach;
-    const T product = pair.radius_i * pair.radius_j * (inverse * pair.inverse_masses);
+    const T both = pair.inverse_masses * pair.reach, inverse = 1.0 / (both * d2);
+    inverse_d2 = inverse * both;
+    in.reduced_mass = inverse * (pair.reach * d2);
+    const T product = pair.radius_i * pair.radius_j * (inverse * (pair.inverse_masses * d2));
     in.elastic_radius = uniform.equivalent_radius ? 2 * product : product;
     if constexpr (has_necks<Law>)
       in.sintering_radius =
@@ -77,9 +78,12 @@ FrameOf<T> frame_of(const Law& law, const PairUniform& uniform, const PairOf<T>&
     else
       in.sintering_radius = 0.0;
   } else {
-    in.reduced_mass = 1.0 / pair.inverse_masses;
+    const T inverse = 1.0 / (pair.inverse_masses * d2);
+    inverse_d2 = inverse * pair.inverse_masses;
+    in.reduced_mass = inverse * d2;
     in.elastic_radius = in.sintering_radius = 0.0;
   }
+  const T inverse_distance = d * inverse_d2;
   f.normal = inverse_distance * pair.branch;
   f.approach = dot(pair.velocity, f.normal);
   in.overlap = d - pair.reach;
@@ -118,7 +122,7 @@ FrictionOf<T> friction_of(const Law& law, const PairUniform& uniform, const Pair
                                 frame.in.reduced_mass,
                                 uniform.step};
   FrictionOf<T> f;
-  f.force = coulomb(uniform.friction, uniform.friction.coefficient, in, slip);
+  f.force = coulomb(uniform.friction, in, slip);
   f.couple = cross(n, f.force);
   const auto left = share > 0;
   const TripleOf<T> none{0.0, 0.0, 0.0};

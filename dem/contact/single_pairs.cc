@@ -47,14 +47,14 @@ void keep(const Law& law, const NormalInput& in, const NormalForce& f, const Nec
 template <class Law, bool friction>
 bool pair(const KernelJob& job, std::size_t near, Given& given, ContactRecord* record) {
   const Law& law = *static_cast<const Law*>(job.law);
-  const std::uint32_t place = job.place[near], i = job.first[place], coded = job.second[place];
+  const std::uint32_t place = job.place[near], coded = job.second[place];
+  const std::uint32_t i = job.first_particle + job.offset_i[near] / 8;
   const std::uint32_t j = coded & ContactList::index_mask;
   const double *a = job.body + 8 * std::size_t(i), *b = job.body + 8 * std::size_t(j);
   PairOf<double> pair;
-  pair.branch = triple(b) - triple(a);
-  if (job.shift) pair.branch = pair.branch + triple(job.shift + 4 * (coded >> ContactList::index_bits));
-  pair.radius_i = a[3], pair.radius_j = b[3];
+  pair.branch = triple(b) - triple(a) + triple(job.shift + 4 * (coded >> ContactList::index_bits));
   pair.reach = b[3] + a[3];
+  pair.radius_i = a[3], pair.radius_j = pair.reach - a[3];
   pair.inverse_masses = b[7] + a[7];
   const double d2 = dot(pair.branch, pair.branch);
   NeckHistory* neck = nullptr;
@@ -137,8 +137,8 @@ void record_pairs(const KernelJob& job, std::size_t begin, std::size_t end, Cont
     const std::uint32_t place = job.place[n];
     Given given;
     if (!pair<Law, friction>(job, n, given, record + place)) continue;
-    double* const i = job.sums + job.stride * (job.first[place] - job.first_particle);
-    double* const j = job.sums + job.stride * job.slot[n];
+    double* const i = job.sums + job.stride * (job.offset_i[n] / 8);
+    double* const j = job.sums + job.stride * (job.offset_j[n] / 8);
     for (std::size_t k = 0; k < forces; ++k) i[k] += given.i[k];
     for (std::size_t k = 0; k < forces; ++k) j[k] += given.j[k];
     if (job.next_step > 0)

@@ -17,24 +17,37 @@ struct TangentialInputOf {
   double step;           ///< [s]
 };
 
+/// Friction as the contacts of a bucket or wall need it.
+struct Friction {
+  double coefficient;      ///< mu
+  double stiffness_ratio;  ///< k_t / k_n
+  double damping;          ///< 2 xi_t sqrt(k_t / k_n), so that c_t = damping x sqrt(m k_n)
+
+  Friction(const FrictionModel& m, double mu)
+      : coefficient(mu),
+        stiffness_ratio(m.tangential_stiffness_ratio),
+        damping(2 * m.tangential_damping_ratio * std::sqrt(m.tangential_stiffness_ratio)) {}
+};
+
 /// Tangential force on i [N]; advances the spring displacement `slip` [m], which turns with the contact plane and is
 /// cut back to what the sliding force stretches.
 template <class T>
-TripleOf<T> coulomb(const FrictionModel& model, double coefficient, const TangentialInputOf<T>& in, TripleOf<T>& slip) {
-  const T k = model.tangential_stiffness_ratio * in.normal_stiffness;
-  T c = 0.0;  // 2 xi_t sqrt(m k_t), by the root that the normal damper takes too
-  if (model.tangential_damping_ratio > 0)
-    c = 2 * model.tangential_damping_ratio * std::sqrt(model.tangential_stiffness_ratio) *
-        root(in.reduced_mass * in.normal_stiffness);
+TripleOf<T> coulomb(const Friction& friction, const TangentialInputOf<T>& in, TripleOf<T>& slip) {
+  const T k = friction.stiffness_ratio * in.normal_stiffness;
+  T c = 0.0;
+  if (friction.damping > 0) c = friction.damping * root(in.reduced_mass * in.normal_stiffness);
   slip = slip + T(in.step) * in.velocity;
   slip = slip - dot(slip, in.normal) * in.normal;
   const TripleOf<T> damping = c * in.velocity;
   TripleOf<T> force = k * slip + damping;
-  const T limit = coefficient * in.normal_force, size2 = dot(force, force);
+  const T limit = friction.coefficient * in.normal_force, size2 = dot(force, force);
   const auto slides = size2 > limit * limit;
   if (any(slides)) {
-    force = select(slides, (limit / root(size2)) * force, force);
-    slip = select(slides & (k > 0), (1 / k) * (force - damping), slip);
+    const auto stretches = k > 0;
+    const T size = root(size2), stiffness = select(stretches, k, T(1.0));
+    const T inverse = 1.0 / (size * stiffness);  // one division for two
+    force = select(slides, (limit * (inverse * stiffness)) * force, force);
+    slip = select(slides & stretches, (inverse * size) * (force - damping), slip);
   }
   return force;
 }
@@ -44,13 +57,15 @@ inline constexpr double rotation_factor = 3.5;
 
 /// Share of the sticking tangential spring in StepStiffness, 3.5 (k_t + 2 c_t/dt) [N/m].
 template <class T>
-T tangential_step_stiffness(const FrictionModel& model, const T& normal_stiffness, const T& reduced_mass,
+T tangential_step_stiffness(const Friction& friction, const T& normal_stiffness, const T& reduced_mass,
                             double next_step) {
-  const T k = model.tangential_stiffness_ratio * normal_stiffness;
-  if (!(model.tangential_damping_ratio > 0)) return rotation_factor * k;
-  const T c = 2 * model.tangential_damping_ratio * std::sqrt(model.tangential_stiffness_ratio) *
-              root(reduced_mass * normal_stiffness);
-  return rotation_factor * (k + 2 * c / next_step);
+  const T k = friction.stiffness_ratio * normal_stiffness;
+  if (!(friction.damping > 0)) return rotation_factor * k;
+  return rotation_factor * (k + 2 * friction.damping * root(reduced_mass * normal_stiffness) / next_step);
+}
+inline double tangential_step_stiffness(const FrictionModel& model, double normal_stiffness, double reduced_mass,
+                                        double next_step) {
+  return tangential_step_stiffness(Friction(model, model.coefficient), normal_stiffness, reduced_mass, next_step);
 }
 
 }  // namespace densify::dem

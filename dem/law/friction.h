@@ -26,7 +26,7 @@ inline Vec3 coulomb(const FrictionModel& model, double coefficient, const Tangen
   const auto triple = [](const Vec3& v) { return TripleOf<double>{v[0], v[1], v[2]}; };
   TripleOf<double> turned = triple(slip);
   const TripleOf<double> force =
-      coulomb(model, coefficient,
+      coulomb(Friction(model, coefficient),
               TangentialInputOf<double>{triple(in.normal), triple(in.velocity), in.normal_force, in.normal_stiffness,
                                         in.reduced_mass, in.step},
               turned);

@@ -17,7 +17,6 @@ struct KelvinVoigt {
   /// Damper c = 2 xi sqrt(m k) with the reduced mass and the tangent stiffness (4.24, 4.25) [N s/m].
   template <class T>
   T damper(const NormalInputOf<T>& in) const {
-    if (damping_ratio == 0) return 0.0;
     return 2 * damping_ratio * root(in.reduced_mass * spring.tangent(in.overlap, in.elastic_radius));
   }
 
