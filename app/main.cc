@@ -6,6 +6,7 @@
 
 #include "app/bench.h"
 #include "app/check.h"
+#include "app/moduli.h"
 #include "app/run.h"
 #include "app/trade.h"
 #include "app/trade_ladder.h"
@@ -75,6 +76,40 @@ int run_main(int argc, char** argv) {
   trade_command->add_flag("--resume", trade.resume, "Keep the finished runs in the folder and make the others");
   trade_command->add_flag("--quiet", trade.quiet, "No progress, no tables");
 
+  densify::app::ModuliCommand moduli;
+  CLI::App* moduli_command = app.add_subcommand(
+      "moduli", "Elastic moduli, viscosities and sintering stress of the contact network at moments of a result");
+  moduli_command
+      ->add_option("RESULT", moduli.source, "A folder of results, a result.h5, or a scene, which is run first")
+      ->required();
+  moduli_command
+      ->add_option("--at-time", moduli.times, "The snapshot nearest to a time, e.g. \"20 min\"; again for each")
+      ->take_all();
+  moduli_command
+      ->add_option("--at-density", moduli.densities, "The snapshot nearest to a relative density; again for each")
+      ->take_all();
+  moduli_command
+      ->add_option("--model", moduli.models,
+                   "Contact model: normal_spring, bonded_neck, neck_beam or series; again for each; without it all")
+      ->take_all();
+  moduli_command
+      ->add_option("--tangential", moduli.tangential,
+                   "Lateral over normal stiffness of a contact; without it the model's")
+      ->check(CLI::Range(0.0, 10.0));
+  moduli_command
+      ->add_option("--tangential-viscosity", moduli.tangential_viscosity, "Lateral over normal viscosity of a contact")
+      ->check(CLI::Range(0.0, 10.0));
+  moduli_command
+      ->add_option("--rigid", moduli.rigid,
+                   "Viscosity of contacts that do not flow, over the median of those that do; without it 1e4")
+      ->check(CLI::Range(1.0, 1e12));
+  moduli_command->add_option("--out", moduli.folder, "Folder of the tables; without it that of the result");
+  moduli_command->add_option("--set", moduli.overrides, "path.to.key=value of a scene, again for each")->take_all();
+  moduli_command->add_option("--threads", moduli.threads, "Threads of a scene's run")->check(CLI::Range(1, 1024));
+  moduli_command->add_flag("--soft-modes", moduli.soft_modes,
+                           "Count the motions that nothing resists; factorises, for up to some thousand particles");
+  moduli_command->add_flag("--quiet", moduli.quiet, "Tables only");
+
   CLI::App* ladder_command =
       app.add_subcommand("help-ladder", "Every key of a ladder with unit, range, default and meaning");
   CLI::App* scene_command =
@@ -96,6 +131,7 @@ int run_main(int argc, char** argv) {
   if (run_command->parsed()) return densify::app::run_command(run);
   if (check_command->parsed()) return densify::app::check_command(check);
   if (bench_command->parsed()) return densify::app::bench_command(bench);
+  if (moduli_command->parsed()) return densify::app::moduli_command(moduli);
   if (trade_command->parsed()) return densify::app::trade_command(trade);
   if (ladder_command->parsed()) std::fputs(densify::app::ladder_help().c_str(), stdout);
   if (scene_command->parsed()) std::fputs(densify::dem::scene_help().c_str(), stdout);

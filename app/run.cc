@@ -94,22 +94,23 @@ int run_realisations(const dem::Scene& scene, const RunCommand& command, const f
 
 }  // namespace
 
+fs::path result_folder(const std::string& scene, const std::string& folder) {
+  if (!folder.empty()) return folder;
+  const fs::path given = fs::path(scene).lexically_normal();
+  const bool is_folder = fs::is_directory(given);
+  const fs::path file = is_folder ? given / "scene.toml" : given;
+  std::string name =
+      is_folder ? (given.has_filename() ? given : given.parent_path()).filename().string() : file.stem().string();
+  if (!is_folder && name != "scene" && file.has_parent_path())
+    name = file.parent_path().filename().string() + "_" + name;
+  else if (name == "scene")
+    name = fs::absolute(file).parent_path().filename().string();
+  return fs::path("results") / name;
+}
+
 int run_command(const RunCommand& command) {
   const dem::Scene scene = dem::read_scene(command.scene, command.overrides);
-  fs::path folder = command.folder;
-  if (folder.empty()) {
-    const fs::path given = fs::path(command.scene).lexically_normal();
-    const fs::path file = scene.file.lexically_normal();
-    std::string name = fs::is_directory(given)
-                           ? (given.has_filename() ? given : given.parent_path()).filename().string()
-                           : file.stem().string();
-    if (!fs::is_directory(given) && name != "scene" && file.has_parent_path())
-      name = file.parent_path().filename().string() + "_" + name;
-    else if (name == "scene")
-      name = fs::absolute(file).parent_path().filename().string();
-    folder = fs::path("results") / name;
-  }
-
+  const fs::path folder = result_folder(command.scene, command.folder);
   if (scene.realisations > 1) return run_realisations(scene, command, folder);
   ProgressLine line(command.quiet);
   dem::RunOptions options;

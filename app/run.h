@@ -1,6 +1,7 @@
 #pragma once
 // densify run: a scene from the command line, with progress, signals and a summary.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct RunCommand {
   bool resume = false;
   bool quiet = false;
 };
+
+/// Where the results of a scene go: `folder`, or results/NAME when that is empty.
+std::filesystem::path result_folder(const std::string& scene, const std::string& folder);
 
 /// Returns the exit code; errors are thrown.
 int run_command(const RunCommand&);

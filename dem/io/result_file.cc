@@ -34,9 +34,10 @@ void write_contacts(Hdf5Writer& file, const std::string& group, const Snapshot& 
   file.list(group + "/sintering_force", s.sintering_force, "N");
   file.list(group + "/neck_radius", s.neck_radius, "m");
   file.list(group + "/elastic_displacement", s.elastic_displacement, "m");
+  file.list(group + "/since", s.since, "s");
   file.list(group + "/phase", s.phase, "");
   file.attribute(group + "/phase", "values",
-                 "0 loose, 1 activating, 2 sintering, 3 arriving, 4 bonded, 5 deactivating, 6 dormant");
+                 "0 loose, 1 activating, 2 sintering, 3 arriving, 4 bonded, 5 deactivating, 6 dormant, 7 reactivating");
 }
 
 void write_walls(Hdf5Writer& file, const std::string& group, const Snapshot& s) {

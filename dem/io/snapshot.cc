@@ -61,6 +61,7 @@ void take_contacts(Snapshot& shot, const State& s, const Recording& recording) {
     shot.sintering_force.push_back(record.sintering);
     shot.neck_radius.push_back(list.neck[k].radius);
     shot.elastic_displacement.push_back(list.neck[k].elastic);
+    shot.since.push_back(list.neck[k].since);
     shot.phase.push_back(std::uint8_t(list.neck[k].phase));
   }
 }

@@ -46,6 +46,7 @@ struct Snapshot {
   std::vector<double> sintering_force;       ///< part of the normal force; only with necks [N]
   std::vector<double> neck_radius;           ///< only with necks [m]
   std::vector<double> elastic_displacement;  ///< u_e; only with necks [m]
+  std::vector<double> since;                 ///< begin of the neck's last transition; only with necks [s]
   std::vector<std::uint8_t> phase;           ///< NeckPhase; only with necks
 
   std::vector<Wall> wall;

@@ -11,7 +11,8 @@ Network build_network(const ContactWorld& world, double time) {
     using Law = std::decay_t<decltype(law)>;
     NormalInput in = view.input;
     in.time = time;
-    NetworkEdge edge{view.i, view.j, view.at_wall, view.place, view.normal, view.branch, in.overlap, 0, {}};
+    NetworkEdge edge{view.i, view.j, view.at_wall, view.place, view.normal, view.branch, in.overlap, 0, 0, {}};
+    edge.lever = view.at_wall ? view.branch.norm() : world.particles.body[view.i].radius + 0.5 * in.overlap;
     if constexpr (has_necks<Law>) {
       edge.law = law.linearise(in, *neck);
       if (neck->phase != NeckPhase::loose) edge.neck_radius = neck->radius;
@@ -51,25 +52,6 @@ std::vector<bool> find_rattlers(const Network& network, std::size_t least) {
     }
   }
   return out;
-}
-
-std::size_t count_islands(const Network& network, const std::vector<bool>& left_out) {
-  std::vector<std::uint32_t> root(network.particles);
-  std::iota(root.begin(), root.end(), 0u);
-  auto find = [&](std::uint32_t p) {
-    while (root[p] != p) p = root[p] = root[root[p]];
-    return p;
-  };
-  std::size_t islands = 0;
-  for (std::uint32_t p = 0; p < network.particles; ++p) islands += !left_out[p];
-  for (const auto& e : network.edges) {
-    if (e.at_wall || left_out[e.i] || left_out[e.j]) continue;
-    const std::uint32_t a = find(e.i), b = find(e.j);
-    if (a == b) continue;
-    root[a] = b;
-    --islands;
-  }
-  return islands;
 }
 
 FrozenStep frozen_step(const Linearisation& l, double step) {

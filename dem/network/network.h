@@ -15,6 +15,7 @@ struct NetworkEdge {
   Vec3 branch;         ///< from centre to centre, or from centre to wall [m]
   double overlap;      ///< u, negative in contact [m]
   double neck_radius;  ///< a; 0 without a neck [m]
+  double lever;        ///< from the centre of i along the normal to the contact point, r_i + u/2 [m]
   Linearisation law;   ///< stiffness, damper, viscosity, active and stored force
 };
 
@@ -29,9 +30,6 @@ Network build_network(const ContactWorld&, double time);
 /// Particles that cannot carry force, flagged: those with fewer than `least` edges to others that can (walls count).
 /// In a network of normal springs that only push four edges hold a particle, with tension three, bonded ones one.
 std::vector<bool> find_rattlers(const Network&, std::size_t least);
-
-/// Number of parts that no edge connects; rattlers left out are none.  Walls are no nodes.
-std::size_t count_islands(const Network&, const std::vector<bool>& left_out);
 
 /// One contact over a step with its neck frozen, by backward Euler: F(t+h) = force + coefficient x rate.
 struct FrozenStep {

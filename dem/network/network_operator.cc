@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SparseCholesky>
 
 namespace densify::dem {
 
@@ -163,17 +162,6 @@ Eigen::SparseMatrix<double> NetworkOperator::assemble() const {
   Eigen::SparseMatrix<double> matrix(rows(), rows());
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
-}
-
-std::size_t NetworkOperator::count_soft_modes(double share) const {
-  Eigen::SparseMatrix<double> shifted = assemble();
-  const double largest = links_.empty() ? 0.0 : Vector(shifted.diagonal()).maxCoeff();
-  if (largest == 0) return std::size_t(rows());
-  Eigen::SparseMatrix<double> identity(rows(), rows());
-  identity.setIdentity();
-  shifted -= share * largest * identity;
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(shifted);
-  return std::size_t((factors.vectorD().array() < 0).count());
 }
 
 }  // namespace densify::dem

@@ -60,9 +60,6 @@ class NetworkOperator {
 
   /// K as a sparse matrix, for direct solvers and small networks.
   Eigen::SparseMatrix<double> assemble() const;
-  /// Number of eigenvalues of K below `share` of its largest diagonal entry, by the inertia of K - shift (Sylvester):
-  /// rigid translations, rattlers (three each) and floppy modes.
-  std::size_t count_soft_modes(double share) const;
 
  private:
   std::vector<Mat3> inverse_blocks(double& guide_inverse) const;

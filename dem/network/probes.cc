@@ -1,8 +1,11 @@
 #include "dem/network/probes.h"
 
-#include <array>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <numeric>
 
 #include "base/check.h"
+#include "dem/network/multigrid.h"
 
 namespace densify::dem {
 
@@ -17,85 +20,246 @@ Mat3 unit_rate(int k) {
   return rate;
 }
 
-void add_stress(Vec6& sum, const Vec3& force, const Vec3& branch) {
+Vec6 stress_of(const Vec3& force, const Vec3& branch) {
+  Vec6 s;
   for (int k = 0; k < 6; ++k)
-    sum[k] += 0.5 * (force[row_of[k]] * branch[column_of[k]] + force[column_of[k]] * branch[row_of[k]]);
+    s[k] = 0.5 * (force[row_of[k]] * branch[column_of[k]] + force[column_of[k]] * branch[row_of[k]]);
+  return s;
+}
+
+/// Stiffness of an edge and what it sees of its ends; rotations are measured by the arc at a distance `length`, so that
+/// all unknowns are lengths.
+template <int B>
+struct EdgeMatrices {
+  using End = Eigen::Matrix<double, 3, B>;
+  Mat3 stiffness, turning = Mat3::Zero();
+  End i, j = End::Zero();                          // opening of the contact by the motion of each end
+  End turn_i = End::Zero(), turn_j = End::Zero();  // relative rotation
+
+  EdgeMatrices(const NetworkEdge& e, const EdgeLaw& law, double length) {
+    const Mat3 along = e.normal * e.normal.transpose(), across = Mat3::Identity() - along;
+    stiffness = law.coefficient * along + law.lateral * across;
+    i = End::Zero();
+    i.template leftCols<3>() = -Mat3::Identity();
+    if (!e.at_wall) j.template leftCols<3>().setIdentity();
+    if constexpr (B == 6) {
+      turning = (law.torsion * along + law.bending * across) / (length * length);
+      Mat3 turned;  // n x
+      turned << 0, -e.normal[2], e.normal[1], e.normal[2], 0, -e.normal[0], -e.normal[1], e.normal[0], 0;
+      i.template rightCols<3>() = e.lever / length * turned;
+      turn_i.template rightCols<3>() = -Mat3::Identity();
+      if (e.at_wall) return;
+      j.template rightCols<3>() = (e.branch.norm() - e.lever) / length * turned;
+      turn_j.template rightCols<3>().setIdentity();
+    }
+  }
+};
+
+template <int B>
+class Probe {
+ public:
+  Probe(const Network& network, const std::function<EdgeLaw(const NetworkEdge&)>& law) : network_(network) {
+    law_.reserve(network.edges.size());
+    double sum = 0;
+    for (const NetworkEdge& e : network.edges) law_.push_back(law(e)), sum += e.branch.norm();
+    if (!network.edges.empty()) length_ = sum / double(network.edges.size());
+    for (int c = 0; c < 6; ++c) rate_[std::size_t(c)] = unit_rate(c);
+  }
+
+  CellResponse response(const ProbeSettings&) const;
+  BlockRows<B> matrix() const;
+
+ private:
+  using Motion = Eigen::Matrix<double, B, 1>;
+  template <int C>
+  static Motion motion(const Stack<B, C>& x, std::uint32_t p, int c) {
+    Motion m;
+    for (int k = 0; k < B; ++k) m[k] = x[p][std::size_t(k * C + c)];
+    return m;
+  }
+  EdgeMatrices<B> matrices(std::size_t e) const { return {network_.edges[e], law_[e], length_}; }
+  template <int C>
+  void balance(const Multigrid<B>&, const Stack<B, C>& b, const std::array<double, std::size_t(C)>& forces,
+               double tolerance, Stack<B, C>& x, CellResponse&) const;
+
+  const Network& network_;
+  std::vector<EdgeLaw> law_;
+  double length_ = 1;
+  std::array<Mat3, 6> rate_;
+};
+
+template <int B>
+BlockRows<B> Probe<B>::matrix() const {
+  const auto& edges = network_.edges;
+  BlockRows<B> a;
+  a.diagonal.assign(network_.particles, Tile<B, B>{});
+  a.begin.assign(network_.particles + 1, 0);
+  auto crosses = [](const NetworkEdge& e) { return !e.at_wall && e.i != e.j; };
+  for (const auto& e : edges)
+    if (crosses(e)) ++a.begin[e.i + 1], ++a.begin[e.j + 1];
+  std::partial_sum(a.begin.begin(), a.begin.end(), a.begin.begin());
+  struct Half {
+    std::uint32_t column, edge;
+  };
+  std::vector<Half> half(a.begin.back());
+  std::vector<std::size_t> next(a.begin.begin(), a.begin.end() - 1);
+  for (std::uint32_t e = 0; e < edges.size(); ++e)
+    if (crosses(edges[e])) {
+      half[next[edges[e].i]++] = {edges[e].j, e};
+      half[next[edges[e].j]++] = {edges[e].i, e};
+    }
+  a.column.resize(half.size());
+  a.block.resize(half.size());
+  a.branch.resize(half.size());
+  using Matrix = Eigen::Map<Eigen::Matrix<double, B, B, Eigen::RowMajor>>;
+  for (std::uint32_t p = 0; p < network_.particles; ++p) {
+    const auto begin = half.begin() + std::ptrdiff_t(a.begin[p]), end = half.begin() + std::ptrdiff_t(a.begin[p + 1]);
+    std::stable_sort(begin, end, [](const Half& x, const Half& y) { return x.column < y.column; });
+    a.middle.push_back(
+        std::size_t(std::find_if(begin, end, [&](const Half& h) { return h.column > p; }) - half.begin()));
+    for (std::size_t h = a.begin[p]; h < a.begin[p + 1]; ++h) {
+      const NetworkEdge& e = edges[half[h].edge];
+      const EdgeMatrices<B> m = matrices(half[h].edge);
+      const bool first = e.i == p;
+      a.column[h] = half[h].column;
+      a.branch[h] = (first ? e.branch : Vec3(-e.branch)) / length_;
+      const auto& own = first ? m.i : m.j;
+      const auto& other = first ? m.j : m.i;
+      const auto& own_turn = first ? m.turn_i : m.turn_j;
+      const auto& other_turn = first ? m.turn_j : m.turn_i;
+      Matrix(a.block[h].data()) = own.transpose() * m.stiffness * other + own_turn.transpose() * m.turning * other_turn;
+      Matrix(a.diagonal[p].data()) += own.transpose() * m.stiffness * own + own_turn.transpose() * m.turning * own_turn;
+    }
+  }
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (crosses(edges[e])) continue;
+    const EdgeMatrices<B> m = matrices(e);
+    const auto both = (m.i + m.j).eval(), turn = (m.turn_i + m.turn_j).eval();
+    Matrix(a.diagonal[edges[e].i].data()) +=
+        both.transpose() * m.stiffness * both + turn.transpose() * m.turning * turn;
+  }
+  return a;
+}
+
+template <int B>
+template <int C>
+void Probe<B>::balance(const Multigrid<B>& solver, const Stack<B, C>& b,
+                       const std::array<double, std::size_t(C)>& forces, double tolerance, Stack<B, C>& x,
+                       CellResponse& response) const {
+  // In a lattice the resultants are rounding; they need no relaxing.
+  constexpr double rounding = 1e-13;
+  constexpr int most_iterations = 5000;
+  typename Multigrid<B>::template Goal<C> goal{tolerance, {}, most_iterations};
+  for (std::size_t c = 0; c < std::size_t(C); ++c) goal.floor[c] = rounding * std::sqrt(forces[c]);
+  const auto report = solver.template solve<C>(b, x, goal);
+  response.iterations += report.iterations;
+  constexpr double usable = 1e-3;
+  if (!report.converged && !(report.error <= usable)) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "the network's forces could not be balanced (to %.2g of the start in %d iterations); it may have parts "
+        "that next to nothing holds",
+        report.error, report.iterations);
+    throw RunError(text);
+  }
+}
+
+template <int B>
+CellResponse Probe<B>::response(const ProbeSettings& settings) const {
+  const auto& edges = network_.edges;
+  CellResponse response;
+  Stack<B, 6> pull(network_.particles, Tile<B, 6>{});
+  Stack<B, 1> active(network_.particles, Tile<B, 1>{});
+  std::array<double, 6> forces{};  // squares, of all edges
+  std::array<double, 1> active_forces{};
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const EdgeMatrices<B> m = matrices(e);
+    const Vec3& branch = edges[e].branch;
+    for (int c = 0; c < 6; ++c) {
+      const Vec3 f = m.stiffness * (rate_[std::size_t(c)] * branch);
+      response.affine.col(c) += stress_of(f, branch) / settings.volume;
+      forces[std::size_t(c)] += f.squaredNorm();
+      const Motion on_i = m.i.transpose() * f, on_j = m.j.transpose() * f;
+      for (int k = 0; k < B; ++k) {
+        pull[edges[e].i][std::size_t(k * 6 + c)] -= on_i[k];
+        if (!edges[e].at_wall) pull[edges[e].j][std::size_t(k * 6 + c)] -= on_j[k];
+      }
+    }
+    const Vec3 f = law_[e].force * edges[e].normal;
+    response.affine_active += stress_of(f, branch) / settings.volume;
+    active_forces[0] += f.squaredNorm();
+    const Motion on_i = m.i.transpose() * f, on_j = m.j.transpose() * f;
+    for (int k = 0; k < B; ++k) {
+      active[edges[e].i][std::size_t(k)] -= on_i[k];
+      if (!edges[e].at_wall) active[edges[e].j][std::size_t(k)] -= on_j[k];
+    }
+  }
+  Stack<B, 6> x;
+  Stack<B, 1> x_active(network_.particles, Tile<B, 1>{});
+  {
+    const Multigrid<B> solver(matrix(), settings.direct_nodes);
+    response.bytes = solver.bytes();
+    balance<6>(solver, pull, forces, settings.tolerance, x, response);
+    if (active_forces[0] > 0) balance<1>(solver, active, active_forces, settings.tolerance, x_active, response);
+  }
+  Mat6 power = Mat6::Zero();
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const EdgeMatrices<B> m = matrices(e);
+    const std::uint32_t i = edges[e].i, j = edges[e].at_wall ? i : edges[e].j;  // at a wall m.j is zero
+    Eigen::Matrix<double, 3, 6> opening, turn;
+    for (int c = 0; c < 6; ++c) {
+      const Motion a = motion<6>(x, i, c), b = motion<6>(x, j, c);
+      opening.col(c) = rate_[std::size_t(c)] * edges[e].branch + m.i * a + m.j * b;
+      turn.col(c) = m.turn_i * a + m.turn_j * b;
+    }
+    const Eigen::Matrix<double, 3, 6> f = m.stiffness * opening;
+    power += opening.transpose() * f + turn.transpose() * m.turning * turn;
+    for (int c = 0; c < 6; ++c) response.relaxed.col(c) += stress_of(f.col(c), edges[e].branch) / settings.volume;
+    const Vec3 still = m.stiffness * (m.i * motion<1>(x_active, i, 0) + m.j * motion<1>(x_active, j, 0)) +
+                       law_[e].force * edges[e].normal;
+    response.relaxed_active += stress_of(still, edges[e].branch) / settings.volume;
+  }
+  const double largest = response.affine.cwiseAbs().maxCoeff();
+  constexpr double nothing = 1e-8;
+  response.floppy = response.relaxed.cwiseAbs().maxCoeff() <= nothing * largest;
+  if (response.floppy) {
+    response.relaxed.setZero();
+  } else {
+    response.asymmetry = (response.relaxed - response.relaxed.transpose()).cwiseAbs().maxCoeff() / largest;
+    response.power_mismatch = (power / settings.volume - response.relaxed).cwiseAbs().maxCoeff() / largest;
+    const Mat6 symmetric = 0.5 * (response.relaxed + response.relaxed.transpose());
+    response.smallest_eigenvalue = Eigen::SelfAdjointEigenSolver<Mat6>(symmetric).eigenvalues()[0] / largest;
+  }
+  return response;
 }
 
 }  // namespace
 
-CellResponse probe_cell(const Network& network, const std::function<EdgeLaw(const NetworkEdge&)>& law, double volume,
-                        double relative_residual) {
-  constexpr int cases = 7;  // six rates, then none
-  NetworkOperator k(network.particles, std::nullopt);
-  std::vector<double> at_rest;
-  k.reserve(network.edges.size());
-  for (const NetworkEdge& e : network.edges) {
-    if (e.at_wall) throw RunError("a probe of a cell met a wall; only periodic networks have a cell");
-    const EdgeLaw l = law(e);
-    k.add({e.normal, l.coefficient, l.lateral, e.i, e.j});
-    at_rest.push_back(l.force);
-  }
-  std::array<Mat3, 6> rate;
-  for (int c = 0; c < 6; ++c) rate[std::size_t(c)] = unit_rate(c);
-  auto force = [&](std::size_t e, int c, const Vec3& moved) -> Vec3 {
-    const NetworkLink& l = k.links()[e];
-    const Vec3 v = c < 6 ? Vec3(rate[std::size_t(c)] * network.edges[e].branch + moved) : moved;
-    const Vec3 f = l.lateral * v + ((l.coefficient - l.lateral) * l.normal.dot(v)) * l.normal;
-    return c < 6 ? f : Vec3(f + at_rest[e] * l.normal);
+CellResponse probe_cell(const Network& network, const std::function<EdgeLaw(const NetworkEdge&)>& law,
+                        const ProbeSettings& settings) {
+  return settings.rotation == Rotation::free ? Probe<6>(network, law).response(settings)
+                                             : Probe<3>(network, law).response(settings);
+}
+
+void require_sound(const CellResponse& r, double tolerance) {
+  auto refuse = [&](const char* what, double figure) {
+    char text[200];
+    std::snprintf(text, sizeof text, "%s (%.2g of the largest entry, %.2g is allowed): the solution is not good enough",
+                  what, figure, tolerance);
+    throw RunError(text);
   };
-  Eigen::MatrixXd resultant = Eigen::MatrixXd::Zero(k.rows(), cases), motion = resultant;
-  CellResponse response;
-  std::array<double, cases> forces{};  // squares, of all edges
-  for (int c = 0; c < cases; ++c) {
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(k.rows());
-    Vec6 stress = Vec6::Zero();
-    for (std::size_t e = 0; e < network.edges.size(); ++e) {
-      const Vec3 f = force(e, c, Vec3::Zero());
-      k.add_force(k.links()[e], f, sum);
-      add_stress(stress, f, network.edges[e].branch);
-      forces[std::size_t(c)] += f.squaredNorm();
-    }
-    resultant.col(c) = sum;
-    if (c < 6)
-      response.affine.col(c) = stress / volume;
-    else
-      response.affine_active = stress / volume;
-  }
-  for (int c = 0; c < cases; ++c) {
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(k.rows());
-    // In a lattice the resultants are rounding; they need no relaxing.
-    constexpr double rounding = 1e-13;
-    const double size = resultant.col(c).norm();
-    const double goal = std::max(relative_residual * size, rounding * std::sqrt(forces[std::size_t(c)]));
-    const SolverReport report = k.solve(resultant.col(c), x, {goal, 0});
-    response.iterations += report.iterations;
-    constexpr double usable = 1e-3;
-    if (!report.converged && report.residual > usable * size)
-      throw RunError("the network's forces could not be balanced (residual " + std::to_string(report.residual / size) +
-                     "); it may have parts that nothing holds");
-    motion.col(c) = x;
-  }
-  for (int c = 0; c < cases; ++c) {
-    Vec6 stress = Vec6::Zero();
-    double power = 0;
-    const Eigen::VectorXd x = motion.col(c);
-    for (std::size_t e = 0; e < network.edges.size(); ++e) {
-      const Vec3 moved = k.relative(k.links()[e], x), f = force(e, c, moved);
-      add_stress(stress, f, network.edges[e].branch);
-      if (c < 6) power += f.dot(rate[std::size_t(c)] * network.edges[e].branch + moved);
-    }
-    if (c == 6) {
-      response.relaxed_active = stress / volume;
-      break;
-    }
-    response.relaxed.col(c) = stress / volume;
-    if (power > 0) response.power_mismatch = std::max(response.power_mismatch, std::abs(power - stress[c]) / power);
-  }
-  const double largest = response.relaxed.cwiseAbs().maxCoeff();
-  if (largest > 0)
-    response.asymmetry = (response.relaxed - response.relaxed.transpose()).cwiseAbs().maxCoeff() / largest;
-  return response;
+  if (!r.relaxed.allFinite()) throw RunError("the relaxed tensor is not finite: the solution is not good enough");
+  if (r.asymmetry > tolerance) refuse("the relaxed tensor is not symmetric", r.asymmetry);
+  if (r.power_mismatch > tolerance)
+    refuse("stress times rate is not the work of the contacts (Hill-Mandel)", r.power_mismatch);
+  if (r.smallest_eigenvalue < -tolerance) refuse("the relaxed tensor has a negative eigenvalue", r.smallest_eigenvalue);
+}
+
+std::size_t count_soft_modes(const Network& network, const std::function<EdgeLaw(const NetworkEdge&)>& law,
+                             Rotation rotation, double share) {
+  return rotation == Rotation::free ? count_soft_modes(Probe<6>(network, law).matrix(), share)
+                                    : count_soft_modes(Probe<3>(network, law).matrix(), share);
 }
 
 }  // namespace densify::dem

@@ -1,37 +1,68 @@
 #pragma once
-// What a periodic network answers to six unit rates of its cell and to none: with springs in the links an elastic
-// stiffness, with dashpots a viscosity, with the steps of a Maxwell network the affine law of one step (thesis 6.10).
+// What a network answers to six unit rates of its cell and to none: with springs in the contacts an elastic stiffness,
+// with dashpots a viscosity, with the steps of a Maxwell network the affine law of one step (thesis 6.10).
 
 #include <functional>
 
 #include "dem/network/network.h"
-#include "dem/network/network_operator.h"
 
 namespace densify::dem {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;  ///< rows and columns xx yy zz yz xz xy, shear rates as engineering shears
 
-/// Stress of a cell as an affine function of its rate: stress = active + matrix x rate; unit that of the links over
-/// m^2.
+/// What joins the two ends of an edge; dashpots when the motion is a rate.
+struct EdgeLaw {
+  double coefficient;  ///< along the normal [N/m]
+  double lateral;      ///< across it [N/m]
+  double force;        ///< along the normal at no rate, tension positive [N]
+  double bending = 0;  ///< against rotation across the normal [N m]
+  double torsion = 0;  ///< against rotation about it [N m]
+};
+
+/// Whether particles turn: then lateral springs act at the contact point, otherwise between the centres.
+enum class Rotation : std::uint8_t { held, free };
+
+struct ProbeSettings {
+  double volume;     ///< of the cell, or of the region [m^3]
+  double tolerance;  ///< of the balance of forces: error of the motions in the energy norm, relative
+  Rotation rotation;
+  std::size_t direct_nodes;  ///< networks of at most so many particles are factorised as a whole
+};
+
+/// Where factorising is the faster or the surer way: networks of normal springs alone are nearly floppy, and multigrid
+/// is slow on them.
+constexpr std::size_t usual_direct_nodes(Rotation r) {
+  return r == Rotation::free ? 600 : 20000;
+}
+
+/// Stress of a cell as an affine function of its rate: stress = active + matrix x rate; unit that of the coefficients
+/// over m^2.
 struct CellResponse {
-  Mat6 affine = Mat6::Zero();          ///< every particle moves with the cell: an upper bound
+  Mat6 affine = Mat6::Zero();          ///< every particle moves with the cell and none turns: an upper bound
   Mat6 relaxed = Mat6::Zero();         ///< forces in balance
   Vec6 affine_active = Vec6::Zero();   ///< stress at no rate, particles at rest [Pa]
   Vec6 relaxed_active = Vec6::Zero();  ///< the same with forces in balance [Pa]
-  double asymmetry = 0;                ///< largest |C - C^T| over the largest entry of the relaxed matrix
-  double power_mismatch = 0;  ///< largest |sum of f.v - V stress.rate| over the six rates, relative (Hill-Mandel)
-  int iterations = 0;         ///< of all solutions
+  // Checks, over the largest entry of the affine matrix:
+  double asymmetry = 0;            ///< largest |C - C^T| of the relaxed matrix
+  double power_mismatch = 0;       ///< largest |sum of f.v / V - stress.rate| over all pairs of rates (Hill-Mandel)
+  double smallest_eigenvalue = 0;  ///< of the relaxed matrix
+  bool floppy = false;             ///< nothing is left of the affine matrix: too few contacts; relaxed is then zero
+  int iterations = 0;              ///< of all solutions
+  std::size_t bytes = 0;           ///< memory of matrices
 };
 
-/// Normal and lateral coefficient of an edge, and the force it has at no rate (tension positive) [N].
-struct EdgeLaw {
-  double coefficient, lateral, force;
-};
+/// Probes a network.  `law(edge)` gives each edge's EdgeLaw.  At a wall, or where an edge leaves the region, the far
+/// end moves with the cell.  Throws RunError when forces cannot be balanced.
+CellResponse probe_cell(const Network&, const std::function<EdgeLaw(const NetworkEdge&)>& law, const ProbeSettings&);
 
-/// Probes the network in a periodic cell of the given volume [m^3]; `law(edge)` gives each edge's EdgeLaw.  Edges to
-/// walls must not be there.  Throws RunError when the solver does not get to `relative_residual`.
-CellResponse probe_cell(const Network&, const std::function<EdgeLaw(const NetworkEdge&)>& law, double volume,
-                        double relative_residual);
+/// Throws RunError with a sentence when the relaxed matrix is not symmetric, has a negative eigenvalue, or stress and
+/// rate do another work than the contacts: more than `tolerance` each.
+void require_sound(const CellResponse&, double tolerance);
+
+/// Motions that the network does not resist: eigenvalues below `share` of the largest diagonal entry, the three
+/// translations of a periodic network among them.  Factorises: for small networks.
+std::size_t count_soft_modes(const Network&, const std::function<EdgeLaw(const NetworkEdge&)>& law, Rotation,
+                             double share);
 
 }  // namespace densify::dem

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "base/check.h"
+#include "dem/network/network_operator.h"
 #include "dem/network/probes.h"
 #include "tests/support/setups.h"
 
@@ -71,12 +72,11 @@ TEST(Network, LatticesOfSprings) {
   for (auto lattice : {Lattice::simple_cubic, Lattice::body_centred, Lattice::face_centred})
     for (double t : {0.0, k_t}) {
       const Network net = lattice_network(lattice, 3, SinteringModel::viscoelastic, NeckPhase::bonded, v);
-      const auto r = probe_cell(
-          net,
-          [&](const NetworkEdge& e) {
-            return EdgeLaw{e.law.stiffness, t, 0};
-          },
-          v, 1e-12);
+      const auto r = probe_cell(net,
+                                [&](const NetworkEdge& e) {
+                                  return EdgeLaw{e.law.stiffness, t, 0};
+                                },
+                                {v, 1e-12, Rotation::held, 1000});
       expect_cubic(r.affine, closed_form(lattice, k_n, t), 1e-12);
       expect_cubic(r.relaxed, closed_form(lattice, k_n, t), 1e-9);
       EXPECT_LT(r.asymmetry, 1e-12);
@@ -92,12 +92,11 @@ TEST(Network, LatticesOfDashpotsAndTheirSinteringStress) {
   for (auto lattice : {Lattice::simple_cubic, Lattice::body_centred, Lattice::face_centred}) {
     double v;
     const Network net = lattice_network(lattice, 3, SinteringModel::viscous, NeckPhase::sintering, v);
-    const auto r = probe_cell(
-        net,
-        [&](const NetworkEdge& e) {
-          return EdgeLaw{e.law.viscosity, 0.3 * e.law.viscosity, e.law.active};
-        },
-        v, 1e-12);
+    const auto r = probe_cell(net,
+                              [&](const NetworkEdge& e) {
+                                return EdgeLaw{e.law.viscosity, 0.3 * e.law.viscosity, e.law.active};
+                              },
+                              {v, 1e-12, Rotation::held, 1000});
     expect_cubic(r.relaxed, closed_form(lattice, eta, 0.3 * eta), 1e-8);  // D_eff is given to 9 digits
     const double pressure = f * spacing * double(net.edges.size()) / (3 * v);
     for (int c = 0; c < 6; ++c) EXPECT_NEAR(r.relaxed_active[c] / pressure, c < 3 ? 1 : 0, 1e-8) << c;
@@ -111,12 +110,11 @@ TEST(Network, StepOfAMaxwellLattice) {
   const Network net = lattice_network(Lattice::face_centred, 3, SinteringModel::viscoelastic, NeckPhase::sintering, v);
   const double eta = net.edges[0].law.viscosity, relaxation = eta / k_n;
   auto at = [&](double h) {
-    return probe_cell(
-               net,
-               [&](const NetworkEdge& e) {
-                 return EdgeLaw{frozen_step(e.law, h).coefficient, 0, 0};
-               },
-               v, 1e-12)
+    return probe_cell(net,
+                      [&](const NetworkEdge& e) {
+                        return EdgeLaw{frozen_step(e.law, h).coefficient, 0, 0};
+                      },
+                      {v, 1e-12, Rotation::held, 1000})
         .relaxed;
   };
   expect_cubic(at(1e-9 * relaxation) / (1e-9 * relaxation), closed_form(Lattice::face_centred, k_n, 0), 2e-9);
@@ -159,7 +157,6 @@ TEST(NetworkOperator, SymmetricAndDefinite) {
   const double largest = eigen.eigenvalues()[k.rows() - 1];
   EXPECT_LT(std::abs(eigen.eigenvalues()[2]) / largest, 1e-14);
   EXPECT_GT(eigen.eigenvalues()[3] / largest, 1e-4);
-  EXPECT_EQ(k.count_soft_modes(1e-6), 3u);
 }
 
 // The relaxed answer against a dense solution of the same network by its eigenvectors; below the affine
@@ -170,7 +167,7 @@ TEST(Network, RelaxedAgainstDenseSolution) {
   for (double lateral : {0.0, 0.3}) {
     const NetworkOperator k = operator_of(net, lateral);
     const auto law = [&](const NetworkEdge& e) { return EdgeLaw{e.law.stiffness, lateral * e.law.stiffness, 0}; };
-    const CellResponse r = probe_cell(net, law, volume, 1e-12);
+    const CellResponse r = probe_cell(net, law, {volume, 1e-12, Rotation::held, 1000});
     Mat3 uniaxial = Mat3::Zero();
     uniaxial(2, 2) = 1;
     auto edge_force = [&](const NetworkEdge& e, const Vec3& moved) -> Vec3 {
@@ -204,7 +201,7 @@ TEST(Network, RelaxedAgainstDenseSolution) {
 
 // Three spheres in a row and one that touches nothing: two contacts, so that normal springs alone stiffen two of the
 // twelve degrees of freedom, and springs along all three directions six.
-TEST(Network, RattlersIslandsAndFloppyModes) {
+TEST(Network, RattlersAndFloppyModes) {
   auto s = bonded_setup(SinteringModel::viscoelastic);
   for (double x : {0.0, 1.9, 3.8, 8.0}) test::add_sphere(s.particles, Vec3(x * radius, 0, 0), radius, Vec3::Zero());
   Simulation sim(s);
@@ -214,10 +211,17 @@ TEST(Network, RattlersIslandsAndFloppyModes) {
   auto count = [](const std::vector<bool>& flags) { return std::count(flags.begin(), flags.end(), true); };
   const auto alone = find_rattlers(net, 1);
   EXPECT_EQ(count(alone), 1);
-  EXPECT_EQ(count_islands(net, alone), 1u);
   EXPECT_EQ(count(find_rattlers(net, 2)), 4);  // ends fall, then the middle
-  EXPECT_EQ(operator_of(net, 0).count_soft_modes(1e-9), 12u - 2u);
-  EXPECT_EQ(operator_of(net, 0.5).count_soft_modes(1e-9), 12u - 6u);  // three springs a contact
+  auto soft = [&](double lateral) {
+    return count_soft_modes(
+        net,
+        [&](const NetworkEdge& e) {
+          return EdgeLaw{e.law.stiffness, lateral * e.law.stiffness, 0};
+        },
+        Rotation::held, 1e-9);
+  };
+  EXPECT_EQ(soft(0), 12u - 2u);
+  EXPECT_EQ(soft(0.5), 12u - 6u);  // three springs a contact
 }
 
 // A punch as one more unknown: a column of two spheres on a fixed wall under a force F on the guided wall.  Springs in

@@ -1,0 +1,91 @@
+#!/bin/sh
+# densify moduli on results and on a scene, and the mistakes of its user: one sentence each, no file made.
+# usage: moduli.sh DENSIFY FOLDER_OF_SCENES WORK_FOLDER
+set -eu
+densify=$1 scenes=$2 work=$3
+. "$scenes/support.sh"
+
+# 27 spheres of a simple cubic crystal in a periodic cell, some of them larger, sintering from the start.
+awk 'BEGIN { print "x,y,z,radius,material"
+  for (i = 0; i < 3; i++) for (j = 0; j < 3; j++) for (k = 0; k < 3; k++)
+    printf "%g,%g,%g,%g,NiAl\n", 4 * i + 2, 4 * j + 2, 4 * k + 2, 2.02 + 0.02 * ((i + 2 * j + k) % 3) }' >periodic.csv
+cat >periodic.toml <<'END'
+[materials.NiAl]
+library = "NiAl"
+[specimen]
+shape = "periodic"
+[specimen.import]
+file = "periodic.csv"
+length_unit = "1 um"
+[specimen.cell]
+a = ["12 um", "0 um", "0 um"]
+b = ["0 um", "12 um", "0 um"]
+c = ["0 um", "0 um", "12 um"]
+[specimen.cell.velocity_gradient]
+x = ["-1e-4 1/s", "0 1/s", "0 1/s"]
+y = ["0 1/s", "-1e-4 1/s", "0 1/s"]
+z = ["0 1/s", "0 1/s", "-1e-4 1/s"]
+[contact.sintering]
+damping_ratio = 0.3
+[process]
+start_temperature = "1300 degC"
+[[process.stage]]
+name = "hold"
+duration = "5 min"
+[integration]
+mass_scaling = 1e17
+[output]
+snapshot_interval = "100 s"
+visualisation = false
+END
+
+# A scene is run first; its result then needs no run.
+run_code moduli periodic.toml --out r --quiet
+[ "$code" -eq 0 ] || fail "moduli of a scene: $(cat "$err")"
+[ "$(wc -l <r/moduli.csv)" -eq 17 ] || fail "not four snapshots of four models: $(wc -l <r/moduli.csv)"
+[ "$(wc -l <r/viscosities.csv)" -eq 5 ] || fail "not four snapshots: $(wc -l <r/viscosities.csv)"
+[ -s r/moduli.h5 ] || fail "no moduli.h5"
+cp r/moduli.csv all.csv
+run_code moduli r --at-time "300 s" --model series --out last --soft-modes
+[ "$code" -eq 0 ] || fail "moduli of a result: $(cat "$err")"
+grep -q 'motions without resistance' "$out" || fail "soft modes are not told"
+# The same to the last bit of everything but times and counts: the first twenty columns hold densities and moduli.
+tail -1 last/moduli.csv | cut -d, -f1-20 >one
+tail -1 all.csv | cut -d, -f1-20 >other
+cmp one other || fail "a chosen snapshot differs from the same one among all"
+run_code moduli r/result.h5 --at-density 0.59 --at-density 0.63 --model bonded_neck --tangential 0.5 --out two
+[ "$code" -eq 0 ] || fail "moduli at densities: $(cat "$err")"
+
+refuses 'densify: ' 'RESULT' -- moduli
+refuses 'absent' 'no such scene file' -- moduli absent.toml --out new
+refuses 'absent.h5: ' 'no such result' -- moduli absent.h5
+mkdir empty several several/realisation_001
+: >several/realisation_001/result.h5
+refuses 'empty: ' 'neither result.h5 nor scene.toml' -- moduli empty
+refuses 'several: ' 'realisation_001' -- moduli several
+refuses '--model bonded_nek: ' 'did you mean "bonded_neck"' -- moduli r --model bonded_nek
+refuses '--at-time 10 um: ' 'time' -- moduli r --at-time "10 um"
+refuses '--at-time 1 h: ' 'go from 0 s to 300 s' -- moduli r --at-time "1 h"
+refuses '--at-density 0.99: ' 'outside the run, whose snapshots go from 0.5' -- moduli r --at-density 0.99
+refuses '--tangential' '' -- moduli r --tangential=-1
+refuses '--rigid' '' -- moduli r --rigid 0.1
+refuses '--set integration.mass_scaling=1: ' 'r is a result' -- moduli r --set integration.mass_scaling=1
+# What has no network that spans, no cell, no inner region, no spring.
+sed 's/,2.0[0-9]*,/,1.9,/' periodic.csv >apart.csv
+sed 's/periodic.csv/apart.csv/; s/"-1e-4 1/"0 1/g; s/"5 min"/"100 s"/' periodic.toml >apart.toml
+run_code run apart.toml --quiet --out apart
+refuses 'no network spans the cell at ' '0 contacts of 27 particles' -- moduli apart
+sed '/cell/,/^z/d; s/"periodic"/"free"/' periodic.toml >free.toml
+run_code run free.toml --quiet --out free
+refuses 'free/result.h5: ' 'neither a periodic cell nor walls' -- moduli free
+cp "$scenes/lattice.toml" "$scenes/lattice.csv" .
+run_code run lattice.toml --quiet --out box
+refuses 'box/result.h5: ' 'no region lies two mean diameters from every wall' -- moduli box
+sed 's/^damping_ratio = 0.3/&\nmodel = "viscous"/' periodic.toml >viscous.toml
+run_code run viscous.toml --quiet --out viscous
+[ "$code" -eq 0 ] || fail "the viscous run: $(cat "$err")"
+refuses '--model normal_spring: ' 'has no spring' -- moduli viscous --model normal_spring
+run_code moduli viscous --quiet --out of_viscous
+[ "$code" -eq 0 ] || fail "moduli of a viscous result: $(cat "$err")"
+says 4 '/proc/none' '' -- moduli r --quiet --out /proc/none
+finish
