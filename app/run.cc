@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 void print_summary(const dem::RunSummary& s, const fs::path& folder) {
   const dem::Measures& m = s.last;
-  fmt::print("\nrelative density {:.4f}", m.relative_density);
+  fmt::print("\nrelative density {:.4f} +- {:.4f} numerical", m.relative_density, s.density_error);
   if (std::isfinite(m.relative_density_inner)) fmt::print(" (inner {:.4f})", m.relative_density_inner);
   fmt::print(", coordination number {:.2f}", m.coordination_number);
   if (m.mean_neck_radius > 0)
@@ -42,16 +42,20 @@ void print_summary(const dem::RunSummary& s, const fs::path& folder) {
 void print_ensemble(const dem::EnsembleSummary& s, const dem::Scene& scene, const fs::path& folder) {
   const dem::EnsembleHistory& h = s.history;
   const double n = double(h.realisations);
-  auto line = [&](const char* label, const char* column) {
-    const std::size_t c = dem::column_index(h.mean, column);
-    const double error = h.standard_error.values[c].back();
-    fmt::print("{} {:.4f} +- {:.4f} (from one to the next +- {:.4f})\n", label, h.mean.values[c].back(), error,
-               error * std::sqrt(n));
+  const bool perturbed = scene.perturbation.size > 0;
+  auto last = [&](const dem::History& part, const char* column) {
+    return part.values[dem::column_index(part, column)].back();
   };
-  fmt::print("\n{} realisations ({}), mean +- standard error:\n", h.realisations,
-             scene.perturbation.size > 0 ? "perturbations of one specimen" : "particle arrangements");
-  line("relative density", "relative_density");
-  line("coordination number", "coordination_number");
+  auto line = [&](const char* label, const char* column, const std::string& numerical) {
+    const double error = last(h.standard_error, column);
+    fmt::print("{} {:.4f}{} +- {:.4f} from the {} (from one to the next +- {:.4f})\n", label, last(h.mean, column),
+               numerical, error, perturbed ? "perturbation" : "particle arrangement", error * std::sqrt(n));
+  };
+  fmt::print("\n{} realisations ({}), mean and standard error:\n", h.realisations,
+             perturbed ? "perturbations of one specimen" : "particle arrangements");
+  line("relative density", "relative_density",
+       fmt::format(" +- {:.4f} numerical", last(h.mean, "relative_density_error")));
+  line("coordination number", "coordination_number", "");
   std::uint64_t steps = 0;
   double cpu = 0, packing = 0;
   std::size_t bytes = 0, warnings = 0;

@@ -80,6 +80,40 @@ std::vector<std::string> with_particles(const dem::Scene& scene, double share) {
   return set;
 }
 
+/// Rungs around the scene's own masses: real ones times a factor, or those that an accuracy chooses.
+std::vector<Rung> rungs_of_masses(const dem::Scene& scene) {
+  const dem::IntegrationSettings& own = scene.integration;
+  const auto accuracy = [&](double value) {
+    std::vector<std::string> set{fmt::format("integration.accuracy={:.17g}", value)};
+    for (const char* key : {"mass_scaling", "inertia", "inertia_measure", "fixed_step", "largest_step", "smallest_step",
+                            "load_steps", "skin"})
+      set.push_back(fmt::format("integration.{}=", key));
+    return set;
+  };
+  const auto named = [&](double value, bool converged) {
+    return Rung{fmt::format("accuracy {:g}", value), accuracy(value), "accuracy", value, converged};
+  };
+  if (own.inertia == dem::Inertia::equalised) {
+    const double middle = std::isnan(own.accuracy) ? 3e-3 : own.accuracy;
+    std::vector<Rung> rungs{named(middle / 3, true), named(middle, false), named(std::min(0.1, middle * 3), false)};
+    if (std::isnan(own.accuracy)) rungs.push_back({"the scene", {}, "", dem::unset, false});
+    return rungs;
+  }
+  const std::string family = "mass factor";
+  const double factor = own.mass_scaling;
+  std::vector<Rung> rungs{{"mass factor / 10", {mass(factor / 10)}, family, factor / 10, true},
+                          {"the scene", {}, family, factor, false},
+                          {"mass factor x 10", {mass(factor * 10)}, family, factor * 10, false},
+                          {"mass factor x 100", {mass(factor * 100)}, family, factor * 100, false}};
+  if (own.method == dem::IntegrationMethod::inertia_free) return rungs;
+  rungs.push_back(
+      {"half the step", {fmt::format("integration.step_safety={:.17g}", own.step_safety / 2)}, "", dem::unset, false});
+  for (const double value : {1e-3, 3e-3, 1e-2}) rungs.push_back(named(value, false));
+  if (scene.contact.sintering && !scene.contact.friction)
+    rungs.push_back({"without inertia", {"integration.method=inertia_free"}, "", dem::unset, false});
+  return rungs;
+}
+
 }  // namespace
 
 Ladder read_ladder(const std::filesystem::path& file) {
@@ -98,17 +132,7 @@ std::string ladder_help() {
 
 Ladder built_in_ladder(const dem::Scene& scene) {
   Ladder ladder;
-  const double own = scene.integration.mass_scaling;
-  const std::string family = "mass factor";
-  ladder.rungs = {{"mass factor / 10", {mass(own / 10)}, family, own / 10, true},
-                  {"the scene", {}, family, own, false},
-                  {"mass factor x 10", {mass(own * 10)}, family, own * 10, false},
-                  {"mass factor x 100", {mass(own * 100)}, family, own * 100, false}};
-  ladder.rungs.push_back({"half the step",
-                          {fmt::format("integration.step_safety={:.17g}", scene.integration.step_safety / 2)},
-                          "",
-                          dem::unset,
-                          false});
+  ladder.rungs = rungs_of_masses(scene);
   const auto add = [&](const char* name, std::vector<std::string> set) {
     ladder.rungs.push_back({name, std::move(set), "", dem::unset, false});
   };

@@ -81,4 +81,10 @@ double Schedule::peak_temperature() const {
       ->temperature;
 }
 
+double Schedule::peak_pressure() const {
+  return std::max_element(points_.begin(), points_.end(),
+                          [](const Point& a, const Point& b) { return a.pressure < b.pressure; })
+      ->pressure;
+}
+
 }  // namespace densify

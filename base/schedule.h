@@ -53,6 +53,9 @@ class Schedule {
   /// The highest temperature of the process [K].
   double peak_temperature() const;
 
+  /// The highest pressure of the process [Pa].
+  double peak_pressure() const;
+
  private:
   struct Point {
     double time;         // [s]

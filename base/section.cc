@@ -1,5 +1,7 @@
 #include "base/section.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "base/check.h"
@@ -100,6 +102,32 @@ std::size_t Section::choose(std::string_view key, const std::vector<std::string>
   }
   entry.value = spelled();
   return current;
+}
+
+void Section::named_quantity(std::string_view key, double& value,
+                             std::initializer_list<std::pair<std::string_view, double>> named, Dimension dimension,
+                             const Range& range, Need need, std::string_view meaning) {
+  std::string allowed = range.text(dimension);
+  std::vector<std::string> names;
+  for (const auto& [name, meant] : named) {
+    allowed.append(", or ").append(toml_text(name)).append(" = ").append(toml_quantity(meant, dimension));
+    names.emplace_back(name);
+  }
+  SectionEntry& entry = declare(key, SectionEntry::Kind::value, type_text(dimension), allowed, need,
+                                toml_quantity(value, dimension), meaning);
+  if (const SceneNode* node = present(key, need, dimension_example(dimension), meaning)) {
+    const auto is_named = [&](const auto& n) { return node->kind == SceneNode::Kind::text && node->text == n.first; };
+    const auto found = std::find_if(named.begin(), named.end(), is_named);
+    const bool word = node->kind == SceneNode::Kind::text && !node->text.empty() &&
+                      std::isalpha(static_cast<unsigned char>(node->text.front()));
+    if (found != named.end())
+      value = found->second;
+    else if (word)
+      fail(key, toml_text(node->text) + " is not among " + allowed + did_you_mean(node->text, names));
+    else
+      value = read_quantity(key, *node, dimension, range);
+  }
+  entry.value = toml_quantity(value, dimension);
 }
 
 bool Section::has(std::string_view key) const {

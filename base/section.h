@@ -79,6 +79,10 @@ class Section {
     if (picked < options.size()) value = (options.begin() + picked)->second;
   }
 
+  /// A quantity, or the name of one.
+  void named_quantity(std::string_view key, double& value, std::initializer_list<std::pair<std::string_view, double>>,
+                      Dimension dimension, const Range& range, Need need, std::string_view meaning);
+
   void vector3(std::string_view key, std::array<double, 3>& value, Dimension dimension, Need need,
                std::string_view meaning);
 

@@ -12,10 +12,40 @@ void add_tensor(std::vector<double>& row, const Mat3& t) {
   for (auto [i, j] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}) row.push_back(t(i, j));
 }
 
+/// Inertial number between two rows: D from the density, which knows nothing of thermal growth.
+double inertial_number(const Simulation& sim, const Measures& m, const HistoryMemory& memory) {
+  const State& s = sim.state();
+  const double pressure = std::max(m.contact_pressure, 0.01 * sim.setup().schedule.peak_pressure());
+  const double rate = std::abs(m.relative_density / memory.density - 1) / (s.time - memory.time);
+  double mass = 0;
+  for (const Body& b : s.particles.body) mass += 1 / b.inverse_mass;
+  return pressure > 0 ? rate * mean_diameter(sim) * std::sqrt(mass / solid_volume_now(sim) / pressure) : 0.0;
+}
+
+/// The estimate of the density's error, moved on to this row.
+double error_at_row(const Simulation& sim, const Measures& m, HistoryMemory& memory) {
+  const State& s = sim.state();
+  if (s.cell.periodic) return 0;  // the density is imposed
+  ErrorEstimate& e = memory.error;
+  if (std::isnan(e.initial)) e.initial = m.relative_density;
+  if (s.time > memory.time) {
+    const double share =
+        s.inertia_free
+            ? ErrorEstimate::solver_share * sim.setup().integration.inertia_free.step_tolerance / ErrorEstimate::memory
+            : inertial_number(sim, m, memory) *
+                  (s.contacts.neck.empty() ? ErrorEstimate::loose_share : ErrorEstimate::sintering_share);
+    e.advance(memory.density, m.relative_density, share);
+  }
+  const double peak = sim.setup().schedule.peak_pressure();
+  const double relieved = peak > 0 && !s.contacts.neck.empty() ? 1 - sim.pressure() / peak : 0.0;
+  return e.error(m.relative_density, relieved, s.particles.size());
+}
+
 }  // namespace
 
 std::vector<double> HistoryMemory::numbers() const {
-  return {initial.size[0], initial.size[1], initial.size[2], initial.volume, density, time, punch_impulse, punch_time};
+  return {initial.size[0], initial.size[1], initial.size[2], initial.volume, density, time,
+          punch_impulse,   punch_time,      error.bias,      error.initial};
 }
 
 HistoryMemory HistoryMemory::from(std::span<const double> n) {
@@ -25,6 +55,7 @@ HistoryMemory HistoryMemory::from(std::span<const double> n) {
   m.time = n[5];
   m.punch_impulse = n[6];
   m.punch_time = n[7];
+  m.error = {n[8], n[9]};
   return m;
 }
 
@@ -34,6 +65,7 @@ std::vector<HistoryColumn> history_columns(const Setup& setup) {
                                {"temperature_K", "K"},
                                {"pressure_Pa", "Pa"},
                                {"relative_density", "1"},
+                               {"relative_density_error", "1"},
                                {"relative_density_inner", "1"},
                                {"shrinkage_x", "1"},
                                {"shrinkage_y", "1"},
@@ -69,10 +101,12 @@ std::vector<double> history_row(const Simulation& sim, const Measures& m, Histor
   const State& s = sim.state();
   const Setup& setup = sim.setup();
   const double rate = s.time > memory.time ? (m.relative_density - memory.density) / (s.time - memory.time) : 0.0;
+  memory.density_error = error_at_row(sim, m, memory);
   std::vector<double> row{s.time,
                           sim.temperature(),
                           sim.pressure(),
                           m.relative_density,
+                          memory.density_error,
                           m.relative_density_inner,
                           m.envelope.size[0] / memory.initial.size[0],
                           m.envelope.size[1] / memory.initial.size[1],

@@ -2,6 +2,7 @@
 // The columns of history.csv and how a row comes about; only columns of features that the scene uses.
 
 #include "dem/io/history_file.h"
+#include "dem/measure/error_estimate.h"
 #include "dem/measure/measures.h"
 
 namespace densify::dem {
@@ -13,10 +14,12 @@ struct HistoryMemory {
   double time = 0;           ///< of the row before [s]
   double punch_impulse = 0;  ///< integral of the punch force since the row before [N s]
   double punch_time = 0;     ///< [s]
+  ErrorEstimate error;
+  double density_error = 0;  ///< estimated, of this row's density
 
   std::vector<double> numbers() const;
   static HistoryMemory from(std::span<const double> numbers);
-  static constexpr std::size_t size = 8;
+  static constexpr std::size_t size = 10;
 };
 
 /// Names with units.

@@ -119,6 +119,14 @@ class Run {
     if (options_.say) options_.say(line);
   }
   std::string stage_name(double t) const;
+  /// The key that makes masses smaller when it is lowered.
+  const char* what_sets_masses() const {
+    const IntegrationSettings& s = scene_.integration;
+    return !std::isnan(s.accuracy)          ? "accuracy"
+           : s.inertia == Inertia::uniform  ? "mass_scaling"
+           : !std::isnan(s.inertia_measure) ? "inertia_measure"
+                                            : "fixed_step";
+  }
 
   const Scene& scene_;
   const RunOptions& options_;
@@ -231,9 +239,11 @@ void Run::record(const Recording& recording, bool breakpoint) {
   if (loose && m.damping_share > 0.01 && summary_.warnings.empty())
     summary_.warnings.push_back("dampers carry " + text("%.1f %%", 100 * m.damping_share) +
                                 " of the contact forces at process time " + text("%.4g s", state.time) +
-                                ": the mass scaling makes (4.24) viscous; lower contact.damping_ratio or mass_scaling");
+                                ": the scaled masses make (4.24) viscous; lower contact.damping_ratio or " +
+                                what_sets_masses());
   position_.history_bytes = history_->add_row(history_row(*sim_, m, memory_), stage_name(state.time));
   ++position_.history_rows;
+  summary_.density_error = memory_.density_error;
   next_row_ = next_multiple(row_interval_, state.time);
   summary_.last = m;
 
@@ -328,7 +338,7 @@ void Run::warn_of_motion() {
       "not quasi-static for " + text("%.3g %%", 100 * share) + " of the process: kinetic energy above " +
       text("%.3g", scene_.integration.guards.quasi_static_ratio) + " of the elastic energy, at most " +
       text("%.3g", guards.largest_ratio()) + " at process time " + text("%.4g s", guards.time_of_largest_ratio()) +
-      "; lower mass_scaling, or raise the damping ratios");
+      "; lower " + what_sets_masses() + ", or raise the damping ratios");
 }
 
 RunSummary Run::whole() {

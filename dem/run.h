@@ -50,7 +50,8 @@ struct RunSummary {
   std::size_t bytes = 0;          ///< of state and scratch
   InertiaFreeCount inertia_free;  ///< steps without inertia and what they took
   Measures last;
-  double end_time = 0;  ///< process time [s]
+  double density_error = 0;  ///< estimated, of the last density
+  double end_time = 0;       ///< process time [s]
   std::vector<std::string> warnings;
 };
 

@@ -102,7 +102,15 @@ Simulation::Simulation(Setup setup)
     state_.punch.mass = fraction * setup_.integration.mass_scaling * powder_mass;
     state_.punch.area = punch_area();
   }
-  if (equalised()) control_ = step_control(setup_.integration, setup_.schedule);
+  if (equalised()) {
+    control_ = step_control(setup_.integration, setup_.schedule);
+    if (const auto& sintering = setup_.contact.sintering) {
+      control_.transition = sintering->relaxation_time;
+      for (std::uint8_t a = 0; a < table_.materials(); ++a)
+        for (std::uint8_t b = a; b < table_.materials(); ++b)
+          control_.activation_temperatures.push_back(table_.interface(a, b).activation_temperature);
+    }
+  }
   Vec3 unused;
   for (const auto& w : state_.walls.wall)
     for (std::size_t p = 0; p < n; ++p)
@@ -306,11 +314,14 @@ double Simulation::leapfrog_step() {
   if (!(state_.time + step > state_.time)) refuse_idle_step(step);
   const double kick_step = state_.last_step > 0 ? 0.5 * (state_.last_step + step) : step;
   if (state_.punch.mass > 0) {
-    const double before = state_.punch.velocity;
-    double force = state_.walls.normal_force()[*punch_wall_];
-    if (equalised()) force += column_force(state_.particles, column());
+    const double force = state_.walls.normal_force()[*punch_wall_];
+    if (equalised() && column_mass_ > 0) {
+      const double net = force - pressure() * state_.punch.area + column_force(state_.particles, column());
+      const double change = net / column_mass_ * kick_step;
+      state_.punch.velocity += change;
+      carry(state_.particles, column(), change, setup_.integration.threads);
+    }
     state_.punch.kick(force, pressure(), kick_step);
-    if (equalised()) carry(state_.particles, column(), state_.punch.velocity - before, setup_.integration.threads);
     state_.walls.wall[*punch_wall_].velocity = Vec3(0, 0, state_.punch.velocity);
   }
   const double fastest =

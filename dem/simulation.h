@@ -36,14 +36,16 @@ struct Load {
 
 struct IntegrationSettings {
   IntegrationMethod method = IntegrationMethod::leapfrog;
+  double accuracy = unset;  ///< numerical error of the relative density that is wanted; see choose_settings
   InertiaFreeSettings inertia_free;
   StepRule rule = StepRule::particle_sum;
   double step_safety = 0.8;
   Inertia inertia = Inertia::uniform;
   double fixed_step = unset;       ///< replaces the rule; with equalised inertia the step dt* of the whole run [s]
   double largest_step = unset;     ///< [s]
-  double smallest_step = unset;    ///< of the step control [s]; unset: largest_step / 20
+  double smallest_step = unset;    ///< of the step control [s]; unset: largest_step / 160
   double inertia_measure = unset;  ///< inertial number that the step control of equalised inertia keeps
+  double load_steps = 2000;        ///< StepControl::load_steps
   int limit_interval = 20;         ///< steps between two evaluations of the limit
   double mass_scaling = 1;         ///< alpha_m (4.80)
   double skin = 0.2;               ///< reach of the neighbour list over the mean radius
@@ -94,6 +96,10 @@ struct Recording {
 
 /// The limits of the step control that a scene's integration leaves open.
 StepControl step_control(const IntegrationSettings&, const Schedule&);
+
+/// Sets equalised inertia and the settings of its step control for a wanted bias of the relative density, by what was
+/// measured in hot pressing (doc/accuracy.md); the noise of one trajectory is not in it.
+void choose_settings(IntegrationSettings&, double accuracy);
 
 class Simulation {
  public:
@@ -166,6 +172,7 @@ class Simulation {
   double leapfrog_step();
   void plan_equalised_step();
   void equalise_inertia();
+  void equalise_punch();
   Column column() const;
   void rebuild_lists();
   void prune_near(double list_age);
@@ -184,6 +191,7 @@ class Simulation {
   bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
   StepStiffness stiffness_;      // equalised inertia only: of the last pass
   StepControl control_;
+  double column_mass_ = 0;  // equalised inertia only: of the column's uniform compaction [kg]
   // How far surfaces may have approached since the last pruning, from above, and what the list still allows [m].
   double may_have_travelled_ = 0, list_slack_ = 0;
   std::vector<double> expansion_step_;

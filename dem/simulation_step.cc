@@ -20,14 +20,24 @@ std::string seconds(double t) {
 }  // namespace
 
 StepControl step_control(const IntegrationSettings& settings, const Schedule& schedule) {
-  constexpr double share_of_process = 1e-3, span = 20, share_of_peak = 0.01;
+  constexpr double share_of_process = 1e-3, largest_share = 2.5e-3, share_per_accuracy = 0.27, span = 160;
   StepControl c;
+  const double share = std::isnan(settings.accuracy) ? share_of_process
+                                                     : std::min(largest_share, share_per_accuracy * settings.accuracy);
   c.measure = settings.inertia_measure;
-  c.largest_step = std::isnan(settings.largest_step) ? share_of_process * schedule.end() : settings.largest_step;
+  c.largest_step = std::isnan(settings.largest_step) ? share * schedule.end() : settings.largest_step;
   c.smallest_step = std::isnan(settings.smallest_step) ? c.largest_step / span : settings.smallest_step;
-  for (const Stage& stage : schedule.stages())
-    c.pressure_floor = std::max(c.pressure_floor, share_of_peak * stage.end_pressure);
+  c.load_steps = settings.load_steps;
+  c.peak_pressure = schedule.peak_pressure();
   return c;
+}
+
+void choose_settings(IntegrationSettings& s, double accuracy) {
+  s.accuracy = accuracy;
+  s.inertia = Inertia::equalised;
+  s.inertia_measure = 5.0 / 3 * accuracy;
+  s.load_steps = 7.5 / accuracy;
+  s.skin = 0.8;
 }
 
 StepLimit Simulation::step_limit() {
@@ -97,6 +107,9 @@ void Simulation::plan_equalised_step() {
     stiffness_.of.assign(state_.particles.size(), StiffnessSum{});
     equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety, 0, settings.threads);
   }
+  if (std::isnan(settings.fixed_step))
+    state_.stable_step = std::min(state_.stable_step, schedule_limit(control_, setup_.schedule, state_.time,
+                                                                     state_.stable_step, state_.contacts.neck.empty()));
   state_.critical_step = state_.stable_step / settings.step_safety;
   // Breakpoints of the schedule are met exactly: the last steps before one share the way.
   constexpr double sharing = 10;
@@ -114,22 +127,30 @@ void Simulation::equalise_inertia() {
   const auto& settings = setup_.integration;
   if (state_.last_step > 0 && stiffness_.next_step > state_.last_step * (1 + 1e-9))
     calm(state_.particles, state_.last_step / stiffness_.next_step);
-  Punch& punch = state_.punch;
-  equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety,
-           punch.mass > 0 ? carriage_share : 0.0, settings.threads);
-  if (punch.mass > 0) {
-    const double k = column_stiffness(state_.particles, stiffness_, column());
-    // Its own damper has one end in the world and counts half as much as one between two masses.
-    const double with_damper = (1 + 1 / carriage_share) * k + 2 * punch.damping / stiffness_.next_step;
-    const double mass = 0.5 * mass_for_step(with_damper, stiffness_.next_step, settings.step_safety);
-    if (mass > 0) punch.mass = mass;
-    punch.tune(k, setup_.container.punch_settings.damping_ratio);
-  }
+  const bool pressed = state_.punch.mass > 0;
+  equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety, pressed ? carriage_share : 0.0,
+           settings.threads);
+  if (pressed) equalise_punch();
   if (state_.steps % control_interval != 0) return;
-  const double pressure = std::max(contact_pressure(state_.particles, stiffness_), control_.pressure_floor);
-  measure_inertia(state_.control, state_.particles, state_.cell, pressure);
+  const double pressure = std::max(contact_pressure(state_.particles, stiffness_), control_.pressure_floor());
+  double growth = 0;  // mean over the materials
+  if (state_.last_step > 0)
+    for (const double e : expansion_step_) growth += e / state_.last_step / double(expansion_step_.size());
+  measure_inertia(state_.control, state_.particles, state_.cell, pressure, growth);
   if (std::isnan(settings.fixed_step))
     state_.stable_step = controlled_step(control_, state_.control, state_.stable_step);
+}
+
+void Simulation::equalise_punch() {
+  const double step = stiffness_.next_step, safety = setup_.integration.step_safety;
+  column_mass_ = column_mass(state_.particles, column());
+  // Ready for two first contacts with particles of mean size.
+  const double mean_radius = state_.contacts.skin / setup_.integration.skin;
+  double contacts = state_.walls.step_stiffness()[*punch_wall_];
+  for (std::uint8_t m = 0; m < table_.materials(); ++m)
+    contacts =
+        std::max(contacts, 2 * first_contact_stiffness(setup_.contact, table_.row(m, m), mean_radius, step, safety));
+  state_.punch.mass = mass_for_step((1 + carriage_share) * contacts, step, safety);
 }
 
 void Simulation::refuse_idle_step(double step) const {

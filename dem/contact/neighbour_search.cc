@@ -205,7 +205,11 @@ void Search::search_level(std::uint32_t slot, int own, int other) {
   }
   // Within a level each pair is met from one side only: from the cell that comes first in the order (z, y, x).
   const bool half = own == other;
-  const auto image_of = [](std::int32_t c, std::int32_t n) { return c >= 0 ? c / n : -((n - 1 - c) / n); };
+  const bool periodic = domain_.periodic;
+  const auto image_of = [periodic](std::int32_t c, std::int32_t n) {
+    if (!periodic) return 0;  // the division costs more than the visit of an empty cell
+    return c >= 0 ? c / n : -((n - 1 - c) / n);
+  };
   for (std::int32_t z = half ? e.cell[2] : lower[2]; z <= upper[2]; ++z) {
     const int iz = image_of(z, level.cells[2]);
     const bool same_z = half && z == e.cell[2];
@@ -228,7 +232,8 @@ void Search::search_cell(std::uint32_t slot, const Level& other, const Vec3i& ce
   const std::uint32_t begin = std::max(start_[bucket], first), end = start_[bucket + 1];
   if (begin >= end) return;
   const Entry& a = entries_[slot];
-  const Vec3 shift = domain_.h * Vec3(image[0], image[1], image[2]);
+  const bool here = image == std::array{0, 0, 0};
+  const Vec3 shift = here ? Vec3(Vec3::Zero()) : Vec3(domain_.h * Vec3(image[0], image[1], image[2]));
   for (std::uint32_t n = begin; n < end; ++n) {
     const Entry& b = entries_[n];
     const Vec3 d = (b.x - a.x) + shift;  // the same to the last bit when i and j change places

@@ -38,13 +38,10 @@ void equalise(Particles& particles, const StepStiffness& sums, const ContactMode
   });
 }
 
-double column_stiffness(const Particles& particles, const StepStiffness& sums, const Column& column) {
+double column_mass(const Particles& particles, const Column& column) {
   double sum = 0;
-  for (std::size_t p = 0; p < particles.size(); ++p) {
-    const double share = particles.body[p].radius / column.height;
-    sum += sums.of[p].zz * share * share;
-  }
-  return 2 * sum;
+  for (const Body& b : particles.body) sum += b.radius * b.radius / b.inverse_mass;
+  return sum / (carriage_share * column.height * column.height);
 }
 
 double column_force(const Particles& particles, const Column& column) {

@@ -34,9 +34,10 @@ void equalise(Particles&, const StepStiffness& sums, const ContactModel&, const 
 ///
 /// Masses that suit a long step are heavy, and a column of them hardly follows a punch: its own weight against every
 /// change of the densification rate, rho' h^2 d(rate)/dt, is a pressure that grows with (h/d)^2.  So the powder's
-/// inertia counts relative to the uniform compaction only: x_i = x'_i + zeta_i q e_z with q the punch's place and
-/// zeta_i the height over that of the column.  The force on q is that on the punch plus the sum of F_iz zeta_i, which
-/// vanishes at rest: nothing static changes.
+/// inertia counts relative to the uniform compaction only: x_i = x'_i + zeta_i q e_z with zeta_i the height over that
+/// of the column, and the punch at z' + q with a light mass of its own, so that it stays in balance with what it
+/// touches. The force on q is that on the punch plus the sum of F_iz zeta_i, which vanishes at rest: nothing static
+/// changes.
 struct Column {
   double bottom = 0, height = 0;  ///< [m]
   double zeta(const Body& b) const { return std::clamp((b.position[2] - bottom) / height, 0.0, 1.0); }
@@ -47,8 +48,10 @@ struct Column {
 /// column with (1 + 1/e) times half the mass_for_step of sum k s^2 are stable together.
 inline constexpr double carriage_share = 0.1;
 
-/// Bound of sum k s^2 over all contacts, 2 sum_i A_zz r_i^2/h^2 [N/m].
-double column_stiffness(const Particles&, const StepStiffness&, const Column&);
+/// What the column needs when the particles have their masses (1 + e) k_i dt^2/(2 s^2): sum k s^2 is at most 2 sum_i
+/// k_i r_i^2/h^2, which makes sum_i m_i r_i^2/(e h^2).  With their readiness for a first contact: a column that has
+/// lost its contacts must not be thrown [kg].
+double column_mass(const Particles&, const Column&);
 /// sum F_iz zeta_i [N].
 double column_force(const Particles&, const Column&);
 /// Adds zeta_i times a change of the punch's velocity to the particles.

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
+#include "base/schedule.h"
 #include "dem/contact/step_stiffness.h"
 #include "dem/state/cell.h"
 
@@ -11,10 +13,16 @@ namespace densify::dem {
 
 /// Settings of the step control of equalised inertia.
 struct StepControl {
-  double measure = unset_measure;  ///< inertial number to keep; NaN: the step is fixed
-  double smallest_step = 0;        ///< [s]
-  double largest_step = 0;         ///< [s]
-  double pressure_floor = 0;       ///< least pressure that inertia is measured against [Pa]
+  double measure = unset_measure;               ///< inertial number to keep; NaN: the step is fixed
+  double smallest_step = 0;                     ///< [s]
+  double largest_step = 0;                      ///< [s]
+  double peak_pressure = 0;                     ///< of the process [Pa]
+  double load_steps = 0;                        ///< that a load of the peak pressure takes while the powder is loose
+  double transition = 0;                        ///< duration of activation and deactivation [s]
+  std::vector<double> activation_temperatures;  ///< of the pairs that sinter [K]
+
+  /// Least pressure that inertia is measured against [Pa].
+  double pressure_floor() const { return 0.01 * peak_pressure; }
 
   static constexpr double unset_measure = std::numeric_limits<double>::quiet_NaN();
 };
@@ -45,10 +53,16 @@ double contact_pressure(const Particles&, const StepStiffness&);
 
 /// Updates the running mean of the strain rate and the inertial number I = |D| d sqrt(rho'/p) with the mean diameter d,
 /// the density rho' of the masses as they move and a pressure p [Pa] (da Cruz et al., Phys. Rev. E 72 (2005) 021309).
-void measure_inertia(ControlState&, const Particles&, const Cell&, double pressure);
+/// D is the rate beyond the `growth` of the radii, at which a body that warms deforms like nothing [1/s].
+void measure_inertia(ControlState&, const Particles&, const Cell&, double pressure, double growth);
 
 /// The next step [s]: I goes with the step, so that the wanted number is a proportion away; the change over one
 /// control_interval is limited so that steps follow each other smoothly.
 double controlled_step(const StepControl&, const ControlState&, double step);
+
+/// The longest step from a time on that does justice to the schedule [s].  What is loose rearranges by jumps, as many
+/// for each share of the load whatever the rate: load_steps for the peak pressure.  In any state the pressure changes
+/// by at most a fourth of itself, and a transition of the contacts (4.47-4.54) takes some sixty steps.
+double schedule_limit(const StepControl&, const Schedule&, double time, double step, bool loose);
 
 }  // namespace densify::dem

@@ -158,6 +158,17 @@ void check_container(const Scene& scene, const ScenePlaces& places) {
 void check_integration(const Scene& scene, const ScenePlaces& places) {
   const IntegrationSettings& s = scene.integration;
   const bool controlled = !std::isnan(s.inertia_measure);
+  if (!std::isnan(s.accuracy)) {
+    const char* other = s.method == IntegrationMethod::inertia_free            ? "method = \"inertia_free\""
+                        : s.inertia == Inertia::uniform                        ? "inertia = \"uniform\""
+                        : !std::isnan(s.fixed_step)                            ? "fixed_step"
+                        : s.mass_scaling != IntegrationSettings{}.mass_scaling ? "mass_scaling"
+                                                                               : nullptr;
+    if (other)
+      places.integration->fail(
+          "accuracy", std::string("chooses masses and steps of equalised inertia itself, and so does ") + other +
+                          "; remove one of them");
+  }
   if (s.inertia == Inertia::uniform) {
     if (controlled)
       places.integration->fail("inertia_measure", "belongs to inertia = \"equalised\"; set that, or remove this key");
@@ -183,11 +194,11 @@ void check_integration(const Scene& scene, const ScenePlaces& places) {
 
 void check_scene(const Scene& scene, const ScenePlaces& places) {
   check_container(scene, places);
+  check_integration(scene, places);
   if (scene.integration.method == IntegrationMethod::inertia_free && scene.contact.friction)
     places.integration->fail("method",
                              "\"inertia_free\" has no rotations, which [contact.friction] needs; remove it, or "
                              "use method = \"explicit\"");
-  check_integration(scene, places);
   check_materials(scene, places);
   const auto n = std::uint8_t(scene.materials.size());
   for (std::uint8_t a = 0; a < n; ++a) {

@@ -64,6 +64,10 @@ void read_integration(Section& root, Scene& scene, ScenePlaces& places) {
                       [&](Section& below) { read_inertia_free(below, s.inertia_free); });
     else
       refuse_keys(section, {"inertia_free"}, "belongs to method = \"inertia_free\"; remove it, or set method");
+    section.named_quantity("accuracy", s.accuracy, {{"draft", 1e-2}, {"standard", 3e-3}, {"reference", 1e-3}},
+                           dim::none, Range{0.0, 0.1, Bound::exclusive, Bound::inclusive}, Need::optional,
+                           "numerical error of the relative density: equalised inertia whose steps are chosen for it");
+    if (!std::isnan(s.accuracy)) choose_settings(s, s.accuracy);  // the defaults of what follows
     section.choice("rule", s.rule, {{"particle_sum", StepRule::particle_sum}, {"thesis", StepRule::thesis}},
                    Need::optional, "limit from the sums over each particle's contacts, or pair by pair (4.71)-(4.75)");
     section.quantity("step_safety", s.step_safety, dim::none, share, Need::optional,
@@ -77,10 +81,13 @@ void read_integration(Section& root, Scene& scene, ScenePlaces& places) {
     section.quantity("largest_step", s.largest_step, dim::time, Range::positive(), Need::optional,
                      "the rule gives no longer step than this; with inertia_measure 1/1000 of the process if absent");
     section.quantity("smallest_step", s.smallest_step, dim::time, Range::positive(), Need::optional,
-                     "inertia_measure starts from this step and gives no shorter one; 1/20 of largest_step if absent");
+                     "inertia_measure starts from this step and gives no shorter one; 1/160 of largest_step if absent");
     section.quantity("inertia_measure", s.inertia_measure, dim::none, share, Need::optional,
                      "with equalised inertia: the inertial number, strain rate x mean diameter x root of (density that "
                      "moves / contact pressure), that the steps keep; the error of the density goes with its square");
+    section.quantity(
+        "load_steps", s.load_steps, dim::none, Range::positive(), Need::optional,
+        "with inertia_measure: steps that a pressure takes from zero to its peak while the powder is loose");
     section.integer("limit_interval", s.limit_interval, 1, 1000000, Need::optional,
                     "steps between two evaluations of the limit");
     section.quantity("mass_scaling", s.mass_scaling, dim::none, Range::positive(), Need::optional,

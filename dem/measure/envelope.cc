@@ -117,10 +117,9 @@ double inner_relative_density(const Simulation& sim, double distance) {
   };
   double volume = 0;
   for (const auto& b : s.particles.body) {
-    const double r = b.radius, rho = std::hypot(b.position[0], b.position[1]);
-    const bool clear = round ? rho + r <= radius
-                             : b.position[0] - r >= low[0] && b.position[0] + r <= high[0] &&
-                                   b.position[1] - r >= low[1] && b.position[1] + r <= high[1];
+    const double r = b.radius, x = b.position[0], y = b.position[1], rho = std::sqrt(x * x + y * y);
+    const bool clear =
+        round ? rho + r <= radius : x - r >= low[0] && x + r <= high[0] && y - r >= low[1] && y + r <= high[1];
     if (clear && b.position[2] - r >= low[2] && b.position[2] + r <= high[2]) {
       volume += sphere_volume(r);
       continue;

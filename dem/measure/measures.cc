@@ -48,36 +48,29 @@ void measure_walls(const Simulation& sim, Measures& m) {
 
 }  // namespace
 
-Mat3 stress(const Simulation& sim, const Recording& recording, double volume) {
-  const State& s = sim.state();
-  Mat3 sum = Mat3::Zero();
-  for (std::size_t k = 0; k < recording.contact.size(); ++k)
-    if (recording.contact[k].touching) sum += recording.contact[k].force * branch_vector(s, k).transpose();
-  for (const auto& w : recording.wall) sum += w.force * w.branch.transpose();
-  return symmetric(sum / volume);
-}
-
 Measures measure(const Simulation& sim, const Recording& recording) {
   const State& s = sim.state();
   Measures m;
   m.envelope = measure_envelope(sim);
   m.relative_density = relative_density(sim, m.envelope);
   m.relative_density_inner = inner_relative_density(sim, 2 * mean_diameter(sim));
-  m.stress = stress(sim, recording, m.envelope.volume);
   measure_necks(s, m);
   measure_walls(sim, m);
 
   double contact_force = 0, damping = 0;
   std::size_t touching = 0, forces = 0;
-  Mat3 sintering = Mat3::Zero();
+  Mat3 sintering = Mat3::Zero(), total = Mat3::Zero();
   for (std::size_t k = 0; k < recording.contact.size(); ++k) {
     const ContactRecord& c = recording.contact[k];
     if (!c.touching) continue;
     ++touching;
     const Vec3 branch = branch_vector(s, k);
     const double distance = branch.norm();
+    total += c.force * branch.transpose();
     if (c.sintering != 0) sintering += c.sintering / distance * branch * branch.transpose();
-    contact_force += c.force.norm();
+    const double size = c.force.norm();
+    contact_force += size;
+    m.contact_pressure += size * distance / (3 * m.envelope.volume);
     damping += std::abs(c.damping);
     m.elastic_energy += c.elastic_energy;
     const double ri = s.particles.body[s.contacts.i(k)].radius, rj = s.particles.body[s.contacts.j(k)].radius;
@@ -85,10 +78,12 @@ Measures measure(const Simulation& sim, const Recording& recording) {
     ++forces;
   }
   for (const auto& w : recording.wall) {
+    total += w.force * w.branch.transpose();
     contact_force += w.force.norm();
     m.elastic_energy += w.elastic_energy;
     ++forces;
   }
+  m.stress = symmetric(total / m.envelope.volume);
   m.sintering_stress = sintering / m.envelope.volume;
   m.coordination_number = 2 * double(touching) / double(s.particles.size());
   double resultant = 0;

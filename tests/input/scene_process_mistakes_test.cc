@@ -116,6 +116,28 @@ TEST(SceneMistakes, SmallestStepAboveTheLargest) {
             "scene.toml:40: integration.smallest_step: is above largest_step; lower it");
 }
 
+TEST(SceneMistakes, AccuracyThatIsNoName) {
+  EXPECT_EQ(mistake("mass_scaling = 1e17", "accuracy = \"refernce\""),
+            "scene.toml:37: integration.accuracy: \"refernce\" is not among > 0 and <= 0.1, or \"draft\" = 0.01, or "
+            "\"standard\" = 0.003, or \"reference\" = 0.001; did you mean \"reference\"?");
+  EXPECT_EQ(mistake("mass_scaling = 1e17", "accuracy = 0.5"),
+            "scene.toml:37: integration.accuracy: must be > 0 and <= 0.1, found 0.5");
+}
+
+TEST(SceneMistakes, AccuracyBesideWhatItChooses) {
+  const auto refused = [](const std::string& other) {
+    return "integration.accuracy: chooses masses and steps of equalised inertia itself, and so does " + other +
+           "; remove one of them";
+  };
+  EXPECT_EQ(mistake_added("accuracy = 3e-3\n"), "scene.toml:38: " + refused("mass_scaling"));
+  EXPECT_EQ(mistake("mass_scaling = 1e17", "accuracy = 3e-3\nfixed_step = \"1 s\""),
+            "scene.toml:37: " + refused("fixed_step"));
+  EXPECT_EQ(mistake("mass_scaling = 1e17", "accuracy = 3e-3\ninertia = \"uniform\""),
+            "scene.toml:37: " + refused("inertia = \"uniform\""));
+  EXPECT_EQ(mistake("mass_scaling = 1e17", "accuracy = 3e-3\nmethod = \"inertia_free\""),
+            "scene.toml:37: " + refused("method = \"inertia_free\""));
+}
+
 TEST(SceneMistakes, LoadOnANegativeParticle) {
   EXPECT_EQ(mistake_added("[[load]]\nparticle = -1\nforce = [\"1 N\", \"0 N\", \"0 N\"]\n"),
             "scene.toml:39: load.1.particle: must be >= 0 and <= 4294967295, found -1");

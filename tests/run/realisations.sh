@@ -92,5 +92,5 @@ refuses "specimen.perturbation.size" "the same in every realisation" -- run latt
 # The summary.
 run_code run press.toml --out told --set realisations=2
 [ "$code" -eq 0 ] || fail "told: $(cat "$err")"
-grep -q '^relative density 0\.[0-9]* +- 0\.[0-9]* (from one to the next +- 0\.' "$out" || fail "$(cat "$out")"
+grep -q '^relative density 0\.[0-9]* +- 0\.[0-9]* numerical +- 0\.[0-9]* from the particle arrangement (from one to the next +- 0\.' "$out" || fail "$(cat "$out")"
 finish
