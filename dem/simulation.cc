@@ -222,7 +222,8 @@ void Simulation::keep_list_fresh() {
     const double age =
         list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, setup_.integration.threads);
     if (std::isnan(age)) require_finite(state_);
-    rebuilding = age >= 1;
+    // A step without inertia may use up half of the skin.
+    rebuilding = age >= (state_.inertia_free ? 0.5 : 1.0);
     if (!rebuilding && prune)
       prune_near(age);
     else if (!rebuilding)

@@ -20,6 +20,7 @@ constexpr double young_neck = 0.15;      // neck over radius below which a neck 
 constexpr double breaking_share = 0.05;  // of the first trial, from which on a force that breaks away is accepted
 constexpr double breaking_force = 0.1;   // unbalanced over contact force that may break away in one step
 constexpr double furthest_over_radius = 0.25;  // that a particle may move in one step
+constexpr double furthest_over_skin = 0.25;    // likewise, so that no contact is met that the list does not hold
 constexpr double smallest_force = 1e-300;      // [N], where nothing acts at all
 constexpr double shortest_share = 1e-6;        // of the first trial, before a step counts as impossible
 
@@ -268,10 +269,12 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, s
     // help, it goes its way in several.
     bool thrown = false;
     for (std::size_t p = 0; p < ahead_.size(); ++p) {
-      const double way = h * ahead_.body[p].velocity.norm() / ahead_.body[p].radius;
-      if (way <= furthest_over_radius) continue;
+      const double way = h * ahead_.body[p].velocity.norm();
+      const double furthest =
+          std::min(furthest_over_radius * ahead_.body[p].radius, furthest_over_skin * s.contacts.skin);
+      if (way <= furthest) continue;
       thrown = true;
-      velocity_.segment<3>(Eigen::Index(3 * p)) *= furthest_over_radius / way;
+      velocity_.segment<3>(Eigen::Index(3 * p)) *= furthest / way;
     }
     const bool held_back = thrown && h < breaking_share * std::min(proposed, left);
     if (held_back) respond(s, setup, trial);

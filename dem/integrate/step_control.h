@@ -62,7 +62,8 @@ double controlled_step(const StepControl&, const ControlState&, double step);
 
 /// The longest step from a time on that does justice to the schedule [s].  What is loose rearranges by jumps, as many
 /// for each share of the load whatever the rate: load_steps for the peak pressure.  In any state the pressure changes
-/// by at most a fourth of itself, and a transition of the contacts (4.47-4.54) takes some sixty steps.
+/// by at most a twentieth of itself (down to 0.002 of its peak), and a transition of the contacts (4.47-4.54) takes
+/// some sixty steps.
 double schedule_limit(const StepControl&, const Schedule&, double time, double step, bool loose);
 
 }  // namespace densify::dem

@@ -60,7 +60,7 @@ def main():
     axes.set_yscale("log")
     axes.set_xlabel("processor time of one realisation [s]")
     axes.set_ylabel("largest error of the mean relative density")
-    axes.legend(loc="upper right", fontsize=8)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=3, frameon=False)
     axes.grid(alpha=0.3, which="both")
     for suffix in (".png", ".svg"):
         figure.savefig(output.with_name(output.name + suffix), dpi=110)

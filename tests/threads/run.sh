@@ -11,5 +11,10 @@ mkdir -p build
 }
 export OMP_TOOL_LIBRARIES=/usr/lib/llvm-14/lib/libarcher.so
 export TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1"
+clang++-14 -g -O1 -fopenmp -fsanitize=thread tests/threads/planted_race.cc -o build/tsan/planted_race
+if build/tsan/planted_race >build/tsan/planted_race.log 2>&1 || ! grep -q 'data race' build/tsan/planted_race.log; then
+  echo "the thread sanitizer does not see a planted race" >&2
+  exit 1
+fi
 build/tsan/bin/test_dem --gtest_brief=1 --gtest_filter='Kernels.*Threads*:ForcePass*:NearList*:ContactList*:Checkpoint*'
 build/tsan/bin/test_invariance --gtest_brief=1 --gtest_filter='Invariance.Threads:Recording*'
