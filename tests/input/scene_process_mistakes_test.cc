@@ -125,17 +125,17 @@ TEST(SceneMistakes, AccuracyThatIsNoName) {
 }
 
 TEST(SceneMistakes, AccuracyBesideWhatItChooses) {
-  const auto refused = [](const std::string& other) {
-    return "integration.accuracy: chooses masses and steps of equalised inertia itself, and so does " + other +
-           "; remove one of them";
+  const auto refused = [](const std::string& message, const std::string& line, const std::string& other) {
+    EXPECT_EQ(message,
+              "scene.toml:" + line +
+                  ": integration.accuracy: chooses masses and steps of equalised inertia itself, and so does " + other +
+                  "; remove one of them");
   };
-  EXPECT_EQ(mistake_added("accuracy = 3e-3\n"), "scene.toml:38: " + refused("mass_scaling"));
-  EXPECT_EQ(mistake("mass_scaling = 1e17", "accuracy = 3e-3\nfixed_step = \"1 s\""),
-            "scene.toml:37: " + refused("fixed_step"));
-  EXPECT_EQ(mistake("mass_scaling = 1e17", "accuracy = 3e-3\ninertia = \"uniform\""),
-            "scene.toml:37: " + refused("inertia = \"uniform\""));
-  EXPECT_EQ(mistake("mass_scaling = 1e17", "accuracy = 3e-3\nmethod = \"inertia_free\""),
-            "scene.toml:37: " + refused("method = \"inertia_free\""));
+  refused(mistake_added("accuracy = 3e-3\n"), "38", "mass_scaling");
+  refused(mistake("mass_scaling = 1e17", "accuracy = 3e-3\nfixed_step = \"1 s\""), "37", "fixed_step");
+  refused(mistake("mass_scaling = 1e17", "accuracy = 3e-3\ninertia = \"uniform\""), "37", "inertia = \"uniform\"");
+  refused(mistake("mass_scaling = 1e17", "accuracy = 3e-3\nmethod = \"inertia_free\""), "37",
+          "method = \"inertia_free\"");
 }
 
 TEST(SceneMistakes, LoadOnANegativeParticle) {
