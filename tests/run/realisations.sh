@@ -7,6 +7,7 @@ densify=$1 scenes=$2 work=$3
 . "$scenes/support.sh"
 cp "$scenes/lattice.csv" "$scenes/lattice.toml" .
 sed 's/number = 120/number = 30/; s/green_density = 0.5/green_density = 0.4/; s/checkpoint_interval = .*/checkpoint_interval = "0.02 s"/
+s/mass_scaling = 1e18/mass_scaling = 1e17/
 /^title/a realisations = 3' "$scenes/small_press.toml" >press.toml
 
 # good FOLDER ARGUMENT...: a quiet run that must go well.
@@ -63,7 +64,7 @@ for signal in INT KILL; do
     rounds=$((rounds + 1))
     sleep 0.01
   done
-  [ "$signal" = INT ] || sleep 0.3
+  [ "$signal" = INT ] || sleep 0.1
   kill -"$signal" "$pid"
   code=0
   wait "$pid" || code=$?

@@ -7,7 +7,7 @@ densify=$1 scenes=$2 work=$3
 . "$scenes/support.sh"
 cp "$scenes/lattice.csv" .
 sed 's/^mass_scaling = 1e17/mass_scaling = 1e16/' "$scenes/lattice.toml" >lattice.toml
-sed 's/number = 120/number = 30/; s/green_density = 0.5/green_density = 0.4/' "$scenes/small_press.toml" >press.toml
+cp "$scenes/small_press.toml" press.toml
 
 # wait_for COMMAND...: until it holds; gives up after half a minute.
 wait_for() {
