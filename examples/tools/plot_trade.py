@@ -63,7 +63,7 @@ def main():
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=3, frameon=False)
     axes.grid(alpha=0.3, which="both")
     for suffix in (".png", ".svg"):
-        figure.savefig(output.with_name(output.name + suffix), dpi=110)
+        figure.savefig(output.with_name(output.name + suffix), dpi=110, bbox_inches="tight")
 
 
 if __name__ == "__main__":
