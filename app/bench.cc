@@ -41,10 +41,11 @@ std::vector<BenchJob> jobs_of(const BenchOptions& options) {
 }
 
 void print_line(const BenchResult& r) {
-  fmt::print("{:6} {:4} {:9} {:>6.2f} {:>9}..{:<9} {:>12.2f} {:>12.1f} {:>10.0f} {:>7} {:>10.1e} {:>8.2f}\n", r.packing,
-             r.benchmark, r.particles, r.coordination_number, r.contacts_at_start, r.contacts_at_end,
-             1e-6 * r.particle_steps_per_s, r.ns_per_contact_step, r.bytes_per_particle, r.list_builds, r.force_check,
-             r.slowest_over_fastest);
+  fmt::print(
+      "{:6} {:4} {:9} {:>6.2f} {:>9}..{:<9} {:>12.2f} {:>12.1f} {:>10.0f} {:>7} {:>6.2f} {:>6.2f} {:>10.1e} {:>8.2f}\n",
+      r.packing, r.benchmark, r.particles, r.coordination_number, r.contacts_at_start, r.contacts_at_end,
+      1e-6 * r.particle_steps_per_s, r.ns_per_contact_step, r.bytes_per_particle, r.list_builds, r.list_pairs,
+      r.near_pairs, r.force_check, r.slowest_over_fastest);
   std::fflush(stdout);
 }
 
@@ -52,11 +53,13 @@ void print_line(const BenchResult& r) {
 
 int bench_command(const BenchOptions& options) {
   if (options.features) return bench_features();
+  if (options.lists) return bench_lists();
   if (options.scaling) return bench_scaling(options.threads);
   const auto jobs = jobs_of(options);
   if (!options.json)
     fmt::print(
-        "packing case particles      z contacts start..end    Mpart-step/s  ns/contact  bytes/part  builds  "
+        "packing case particles      z contacts start..end    Mpart-step/s  ns/contact  bytes/part  builds   list   "
+        "near  "
         "deviation  spread\n");
   std::string json;
   bool right = true;

@@ -118,15 +118,22 @@ dem::Setup bench_setup(const BenchJob& job, const std::filesystem::path& packing
   setup.particles.reference_radius.reserve(particles);
   setup.particles.material.reserve(particles);
   setup.particles.id.reserve(particles);
+  const auto add = [&](const Vec3& at, double radius) {
+    setup.particles.id.push_back(std::uint32_t(setup.particles.body.size()));
+    setup.particles.body.push_back({at, radius, Vec3::Zero(), 1});
+    setup.particles.reference_radius.push_back(radius);
+    setup.particles.material.push_back(0);
+  };
+  const Vec3 middle = setup.cell.wrap(setup.cell.origin + 0.5 * setup.cell.h * Vec3::Ones());
+  if (job.giant > 0) add(middle, job.giant);
   for (int x = 0; x < job.copies[0]; ++x)
     for (int y = 0; y < job.copies[1]; ++y)
       for (int z = 0; z < job.copies[2]; ++z)
         for (std::size_t p = 0; p < imported.size(); ++p) {
-          const Vec3 at = imported.position[p] + h * Vec3(x, y, z);
-          setup.particles.id.push_back(std::uint32_t(setup.particles.body.size()));
-          setup.particles.body.push_back({setup.cell.wrap(at), imported.radius[p], Vec3::Zero(), 1});
-          setup.particles.reference_radius.push_back(imported.radius[p]);
-          setup.particles.material.push_back(0);
+          const Vec3 at = setup.cell.wrap(imported.position[p] + h * Vec3(x, y, z));
+          constexpr double pressed = 0.02;  // of the radius of those left around a giant
+          if (job.giant > 0 && (at - middle).norm() < job.giant + (1 - pressed) * imported.radius[p]) continue;
+          add(at, imported.radius[p]);
         }
 
   setup.contact.elasticity = Elasticity::linear;
@@ -179,6 +186,8 @@ BenchResult run_job(const BenchJob& job) {
   result.coordination_number = 2 * contacts / double(result.particles);
   result.ns_per_contact_step = 1e9 * median / double(steps) / contacts;
   result.bytes_per_particle = double(simulation.bytes()) / double(result.particles);
+  result.list_pairs = double(simulation.state().contacts.size()) / double(result.contacts_at_end);
+  result.near_pairs = double(simulation.near_pairs()) / double(result.contacts_at_end);
   result.peak_resident = peak_resident();
   constexpr std::size_t largest_checked = 30000;  // the double loop grows with the square of the number
   if (job.feature == BenchFeature::none && result.particles <= largest_checked)
@@ -192,10 +201,11 @@ std::string to_json(const BenchResult& r) {
       R"({{"packing": "{}", "case": "{}", "particles": {}, "coordination_number": {:.4f}, )"
       R"("ns_per_contact_step": {:.3f}, "particle_steps_per_s": {:.6g}, "bytes_per_particle": {:.1f}, )"
       R"("list_builds": {}, "force_check": {:.3g}, "contacts_at_start": {}, "contacts_at_end": {}, "steps": {}, )"
-      R"("slowest_over_fastest": {:.3f}, "peak_resident_bytes": {}}})",
+      R"("slowest_over_fastest": {:.3f}, "list_pairs_per_contact": {:.3f}, "near_pairs_per_contact": {:.3f}, )"
+      R"("peak_resident_bytes": {}}})",
       r.packing, r.benchmark, r.particles, r.coordination_number, r.ns_per_contact_step, r.particle_steps_per_s,
       r.bytes_per_particle, r.list_builds, r.force_check, r.contacts_at_start, r.contacts_at_end, r.steps,
-      r.slowest_over_fastest, r.peak_resident);
+      r.slowest_over_fastest, r.list_pairs, r.near_pairs, r.peak_resident);
 }
 
 }  // namespace densify::app

@@ -31,6 +31,7 @@ struct BenchJob {
   std::uint64_t steps = 0;  ///< of one repeat; 0: as many as take about half a second
   BenchFeature feature = BenchFeature::none;
   Eigen::Vector3i copies{1, 1, 1};  ///< of the periodic packing along each edge
+  double giant = 0;                 ///< radius of a sphere in the middle that takes the place of others; 0: none
 };
 
 /// Times of one thread are its processor time, of several the wall's; medians over the repeats.
@@ -46,6 +47,7 @@ struct BenchResult {
   double bytes_per_particle = 0;    ///< state and scratch of the simulation
   std::size_t peak_resident = 0;    ///< of the process so far [B]
   std::size_t list_builds = 0;
+  double list_pairs = 0, near_pairs = 0;  ///< pairs of the neighbour list and of the near list per contact, at the end
   double force_check = dem::unset;  ///< largest deviation from the plain double loop, see force_deviation; unset where
                                     ///< it would take minutes or does not know the feature
 };

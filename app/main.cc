@@ -59,6 +59,8 @@ int run_main(int argc, char** argv) {
   bench_command->add_option("--threads", bench.threads, "Threads")->check(CLI::Range(1, 1024));
   bench_command->add_option("--steps", bench.steps, "Steps of one repeat; without it as many as take half a second");
   bench_command->add_flag("--features", bench.features, "A table of what each feature of a scene costs");
+  bench_command->add_flag("--lists", bench.lists,
+                          "Pairs of the lists for one contact, with size ratios of 1.1, 12 and 50");
   bench_command->add_flag("--scaling", bench.scaling, "Case A on 2e3 to 1e6 particles");
   bench_command->add_flag("--json", bench.json, "JSON instead of a table");
 

@@ -202,7 +202,7 @@ void Simulation::rebuild_lists() {
                            setup_.contact.sintering && (table_.any_active() || !state_.contacts.neck.empty())};
   try {
     pass_.near().clear();  // room for the search
-    rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs);
+    rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs, setup_.integration.threads);
   } catch (const InputError& error) {  // a cell that has become too narrow is no mistake of the input any more
     if (state_.steps == 0) throw;
     throw RunError(error.what());
@@ -217,7 +217,8 @@ void Simulation::keep_list_fresh() {
       setup_.contact.sintering && state_.contacts.neck.empty() && state_.contacts.size() > 0 && table_.any_active();
   bool rebuilding = first_necks || state_.walls.age(state_.contacts.skin) >= 1;
   // The list is rebuilt exactly when its own age says so, whatever was pruned since; the bound only spares looking.
-  const bool prune = pass_.near().empty() || !(may_have_travelled_ < pass_.near().skin());
+  const NearList& near = pass_.near();
+  const bool prune = near.empty() || !(may_have_travelled_ < near.skin()) || near.too_wide();
   if (!rebuilding && (prune || !(may_have_travelled_ < list_slack_))) {
     const double age =
         list_age(state_.contacts, state_.particles, state_.cell, state_.expansion, setup_.integration.threads);
@@ -246,7 +247,7 @@ void Simulation::set_list_slack(double list_age) {
 }
 
 void Simulation::prune_near(double list_age) {
-  pass_.near().prune(state_.contacts, state_.particles, state_.cell);
+  pass_.near().prune(state_.contacts, state_.particles, state_.cell, setup_.integration.threads);
   pass_.near_changed(state_.contacts, state_.particles.size());
   may_have_travelled_ = 0;
   set_list_slack(list_age);

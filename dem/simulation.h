@@ -159,7 +159,8 @@ class Simulation {
   double punch_area() const;
   std::size_t bytes() const;  ///< memory of state and scratch
   const InertiaFreeCount& inertia_free_count() const { return inertia_free_.count(); }
-  std::size_t contacts_now() const;  ///< touching or necked pairs
+  std::size_t contacts_now() const;                                        ///< touching or necked pairs
+  std::size_t near_pairs() const { return pass_.near().places().size(); }  ///< that a pass visits
 
  private:
   void set_environment();

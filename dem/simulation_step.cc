@@ -42,8 +42,16 @@ void choose_settings(IntegrationSettings& s, double accuracy) {
 
 StepLimit Simulation::step_limit() {
   const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
-  return critical_step(state_.particles, state_.contacts, state_.cell, table_, setup_.contact, state_.walls, punch,
-                       {state_.time, state_.last_step}, setup_.integration.rule);
+  const auto limit = [&](const PassPairs& pairs) {
+    return critical_step(state_.particles, state_.contacts, pairs, state_.cell, table_, setup_.contact, state_.walls,
+                         punch, {state_.time, state_.last_step}, setup_.integration.rule, setup_.integration.threads);
+  };
+  if (!pass_.near().empty() && may_have_travelled_ < pass_.near().skin()) return limit({pass_.near(), pass_.chunks()});
+  NearList all;
+  all.take_all(state_.contacts);
+  Chunks chunks;
+  chunks.build(state_.contacts, all, state_.particles.size(), setup_.integration.threads);
+  return limit({all, chunks});
 }
 
 void Simulation::require_stable_step() {

@@ -163,14 +163,14 @@ double Walls::elastic_energy(const Particles& particles, const PairTable& table,
 }
 
 void Walls::add_stiffness(const Particles& particles, const PairTable& table, const ContactModel& model,
-                          std::vector<StiffnessSum>& stiffness, std::vector<StiffnessSum>& damping) {
+                          std::vector<NodeSums>& sums) {
   stiffness_.assign(wall.size(), 0);
   damping_.assign(wall.size(), 0);
   each_touching(particles, table, model,
                 [&](const WallContact& c, const Vec3& n, const NormalInput& in, const auto& law) {
                   const Linearisation l = law.linearise(in), across = tangential_share(l, model, in.reduced_mass);
-                  stiffness[c.particle].add(l.stiffness, across.stiffness, n);
-                  damping[c.particle].add(l.damper, across.damper, n);
+                  sums[c.particle].stiffness.add(l.stiffness, across.stiffness, n);
+                  sums[c.particle].damping.add(l.damper, across.damper, n);
                   stiffness_[c.wall] += l.stiffness;
                   damping_[c.wall] += l.damper;
                 });

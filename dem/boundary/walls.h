@@ -82,8 +82,7 @@ class Walls {
   const std::vector<double>& step_stiffness() const { return step_stiffness_; }
 
   /// Adds stiffness and damping of the wall contacts to the particles' sums, for the time step limit.
-  void add_stiffness(const Particles&, const PairTable&, const ContactModel&, std::vector<StiffnessSum>& stiffness,
-                     std::vector<StiffnessSum>& damping);
+  void add_stiffness(const Particles&, const PairTable&, const ContactModel&, std::vector<NodeSums>&);
 
   /// (4/3) E* of a particle of a material against the walls, stiffness factor included [Pa].
   double modulus(const PairTable&, const ContactModel&, std::uint8_t material) const;

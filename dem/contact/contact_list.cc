@@ -79,7 +79,7 @@ std::vector<Kept> kept_histories(const ContactList& list, const std::vector<Eige
 }  // namespace
 
 void rebuild(ContactList& list, Particles& particles, const Cell& cell, const std::vector<double>& expansion,
-             HistoryNeeds needs) {
+             HistoryNeeds needs, int threads) {
   if (particles.size() > ContactList::index_mask)
     throw InputError("powder: more than " + std::to_string(ContactList::index_mask) + " particles are not supported");
   const auto moved = cell.periodic ? wrap_into_cell(particles, cell) : std::vector<Eigen::Vector3i>{};
@@ -93,7 +93,7 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
 
   std::vector<CandidatePair> pairs;
   pairs.reserve(list.first.capacity());
-  find_pairs(particles.body, cell, list.skin, pairs);
+  find_pairs(particles.body, cell, list.skin, threads, pairs);
 
   // Necks that have opened beyond the list's reach stay.
   auto less = [](const CandidatePair& a, const CandidatePair& b) {

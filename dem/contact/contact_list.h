@@ -49,7 +49,7 @@ struct HistoryNeeds {
 
 /// Builds the list anew: wraps the particles into the cell, finds all pairs within reach and carries over histories; a
 /// pair that has a neck stays in the list at any distance.
-void rebuild(ContactList&, Particles&, const Cell&, const std::vector<double>& expansion, HistoryNeeds);
+void rebuild(ContactList&, Particles&, const Cell&, const std::vector<double>& expansion, HistoryNeeds, int threads);
 
 /// Positions, cell and thermal stretches of an earlier moment, and the largest radius and skin of a list made then.
 struct ListMoment {

@@ -7,6 +7,11 @@
 
 namespace densify::dem {
 
+namespace {
+// Particles whose bodies fill the second cache of a usual processor, 2 MiB.
+constexpr std::size_t fits_second_cache = 32768;
+}  // namespace
+
 void ForcePass::list_changed(const ContactList&, std::size_t) {
   near_.clear();
 }
@@ -49,6 +54,7 @@ void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cel
                          particles.body[0].position.data(),
                          particles.angular_velocity.empty() ? nullptr : particles.angular_velocity[0].data(),
                          particles.material.data(),
+                         particles.size() > fits_second_cache,
                          shifts_.data(),
                          deforming ? cell.velocity_gradient.data() : nullptr,
                          growth(named.material_a) != 0 || growth(named.material_b) != 0,

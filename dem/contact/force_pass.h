@@ -47,6 +47,8 @@ class ForcePass {
 
   /// The pairs that the passes visit; who prunes it must prune again before its travel() reaches its skin().
   NearList& near() { return near_; }
+  const NearList& near() const { return near_; }
+  const Chunks& chunks() const { return chunks_; }
   /// To be called after pruning.
   void near_changed(const ContactList&, std::size_t particles);
 

@@ -17,6 +17,8 @@ using Triple = TripleOf<Numbers>;
 constexpr int index_bits = 27;  // as ContactList
 constexpr std::uint32_t index_mask = (1u << index_bits) - 1;
 
+constexpr int most = 32, blocks = most / width;  // of one batch
+
 /// The near pairs of a block, one a lane.
 struct Block {
   const std::uint32_t* place;
@@ -86,6 +88,17 @@ struct Result {
 
 inline std::uint32_t particle_j(const KernelJob& job, const Block& block, int l) {
   return job.second[block.place[l]] & index_mask;
+}
+
+/// Asks for what particles j of a batch of near pairs that is soon to come have.
+template <bool friction>
+inline void fetch(const KernelJob& job, std::size_t begin, std::size_t end) {
+  if (begin + most > end) return;
+  for (std::size_t n = begin; n < begin + most; ++n) {
+    const std::size_t j = job.second[job.place[n]] & index_mask;
+    __builtin_prefetch(job.body + 8 * j);
+    if constexpr (friction) __builtin_prefetch(job.spin + 3 * j);
+  }
 }
 
 template <class Law, bool friction>
@@ -259,7 +272,6 @@ inline void add(const KernelJob& job, const Block& block, const Result& result, 
 /// for its own roots and divisions.
 template <class Law, bool friction, bool plain>
 [[gnu::flatten]] void run_pairs(const KernelJob& shared, std::size_t begin, std::size_t end) {
-  constexpr int blocks = 32 / width;
   const KernelJob job = shared;  // nothing that the loops store can change it
   const Law law = *static_cast<const Law*>(job.law);
   Place found[blocks];
@@ -269,6 +281,7 @@ template <class Law, bool friction, bool plain>
       return Block{first.place + b * width, first.offset_i + b * width, first.offset_j + b * width};
     };
     const int used = (count + width - 1) / width;
+    if (job.far) fetch<friction>(job, at + 2 * most, end);
     for (int b = 0; b < used; ++b) find<Law, friction>(job, block(b), found[b]);
     for (int b = 0; b < used; ++b) act<Law, friction, plain>(law, job, block(b), found[b], result[b]);
     for (int b = 0; b < used; ++b) {
@@ -277,7 +290,6 @@ template <class Law, bool friction, bool plain>
                                            left < width ? left : width);
     }
   };
-  constexpr int most = blocks * width;
   std::size_t at = begin;
   for (; at + most <= end; at += most) batch({job.place + at, job.offset_i + at, job.offset_j + at}, at, most);
   if (at == end) return;

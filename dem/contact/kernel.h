@@ -22,6 +22,7 @@ struct KernelJob {
   const double* body;  ///< 8 a particle: x y z r v_x v_y v_z 1/m
   const double* spin;  ///< 3 a particle
   const std::uint8_t* material;
+  bool far;  ///< too many to stay in the second cache: asked for some pairs ahead
   // Uniform:
   const double* shift;     ///< 4 an image code (x y z 0)
   const double* gradient;  ///< velocity gradient by columns; null in a cell that does not deform

@@ -4,6 +4,8 @@
 #include <limits>
 #include <numeric>
 
+#include "dem/parallel.h"
+
 namespace densify::dem {
 
 namespace {
@@ -21,6 +23,10 @@ void NearList::clear() {
   share_ = share;
 }
 
+bool NearList::too_wide() const {
+  return content_ == Content::pruned && passes_ > many_passes && share_ > smallest_share;
+}
+
 void NearList::take_all(const ContactList& list) {
   content_ = Content::all;
   places_.resize(list.size());
@@ -29,7 +35,7 @@ void NearList::take_all(const ContactList& list) {
   for (const auto& bucket : list.buckets) bucket_end_.push_back(bucket.end);
 }
 
-void NearList::prune(ContactList& list, const Particles& particles, const Cell& cell) {
+void NearList::prune(ContactList& list, const Particles& particles, const Cell& cell, int threads) {
   if (content_ == Content::pruned && passes_ > many_passes) share_ = std::max(0.5 * share_, smallest_share);
   if (content_ == Content::pruned && passes_ < few_passes) share_ = std::min(2 * share_, largest_share);
   content_ = Content::pruned;
@@ -38,10 +44,11 @@ void NearList::prune(ContactList& list, const Particles& particles, const Cell& 
   const ImageShifts shifts(cell);
   const Body* const body = particles.body.data();
   places_.resize(list.size());
-  bucket_end_.clear();
-  std::size_t count = 0;
-  for (const auto& bucket : list.buckets) {
-    for (std::size_t k = bucket.begin; k < bucket.end; ++k) {
+  const std::size_t parts = std::size_t(threads);
+  std::vector<std::size_t> ends(parts);  // of what each part keeps, at the front of its range
+  in_parts(parts, threads, [&](std::size_t t, std::size_t) {
+    std::size_t count = detail::part(list.size(), int(t), threads);
+    for (std::size_t k = count, end = detail::part(list.size(), int(t) + 1, threads); k < end; ++k) {
       const Body &a = body[list.i(k)], &b = body[list.j(k)];
       const double reach = a.radius + b.radius + skin_;
       bool near = (b.position - a.position + shifts[list.image(k)]).squaredNorm() < reach * reach;
@@ -50,10 +57,20 @@ void NearList::prune(ContactList& list, const Particles& particles, const Cell& 
       count += near;
       if (!near && !list.tangential.empty()) list.tangential[k].setZero();
     }
-    bucket_end_.push_back(count);
+    ends[t] = count;
+  });
+  std::size_t count = ends[0];
+  for (std::size_t t = 1; t < parts; ++t) {
+    const auto from = places_.begin() + std::ptrdiff_t(detail::part(list.size(), int(t), threads));
+    const auto to = places_.begin() + std::ptrdiff_t(ends[t]);
+    count = std::size_t(std::copy(from, to, places_.begin() + std::ptrdiff_t(count)) - places_.begin());
   }
   places_.resize(count);
   places_.shrink_to_fit();
+  bucket_end_.clear();
+  for (const auto& bucket : list.buckets)
+    bucket_end_.push_back(
+        std::size_t(std::lower_bound(places_.begin(), places_.end(), std::uint32_t(bucket.end)) - places_.begin()));
 }
 
 std::size_t NearList::bytes() const {

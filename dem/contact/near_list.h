@@ -32,10 +32,12 @@ class NearList {
 
   /// The pairs that are closer than touching + skin() and those with a neck, in the order of the list.  A pair left out
   /// loses its friction spring, as every pair does that does not touch.
-  void prune(ContactList&, const Particles&, const Cell&);
+  void prune(ContactList&, const Particles&, const Cell&, int threads);
 
   /// To be called in every pass: prunings that serve many make the skin smaller.
   void count_pass() { ++passes_; }
+  /// True when a smaller skin would do: particles nearly at rest would otherwise never be pruned again.
+  bool too_wide() const;
 
   /// How far the surfaces of two particles may approach after prune() until it must be pruned again [m].
   double skin() const { return skin_; }

@@ -4,9 +4,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <exception>
 #include <sstream>
 
 #include "base/check.h"
+#include "dem/parallel.h"
 
 namespace densify::dem {
 namespace {
@@ -27,6 +29,7 @@ struct Level {
   std::uint64_t mask = 0;  // all ones when every cell has a bucket of its own
   std::uint32_t first_bucket = 0, buckets = 0;
 
+  bool dense() const { return mask == ~std::uint64_t(0); }
   std::uint32_t bucket(const Vec3i& c) const {
     return first_bucket +
            std::uint32_t((std::uint64_t(c[0]) + stride_y * std::uint64_t(c[1]) + stride_z * std::uint64_t(c[2])) &
@@ -82,19 +85,20 @@ void size_grid(Level& level, const Domain& domain, double skin) {
 
 class Search {
  public:
-  Search(std::span<const Body> bodies, const Cell& cell, double skin, std::vector<CandidatePair>& out);
-  void run();
+  Search(std::span<const Body> bodies, const Cell& cell, double skin);
+  void run(int threads, std::vector<CandidatePair>& out) const;
 
  private:
   void fill_grids(std::span<const Body> bodies);
-  void search_level(std::uint32_t slot, int own, int other);
-  void search_cell(std::uint32_t slot, const Level& other, const Vec3i& cell, const std::array<int, 3>& image,
-                   std::uint32_t first);
+  void search_slots(std::uint32_t begin, std::uint32_t end, std::vector<CandidatePair>& out) const;
+  void search_level(std::uint32_t slot, int own, int other, std::vector<CandidatePair>& out) const;
+  template <class Inside>
+  void search_run(const Entry& a, std::uint32_t begin, std::uint32_t end, const std::array<int, 3>& image,
+                  std::vector<CandidatePair>& out, Inside&& inside) const;
   [[noreturn]] void refuse_cell(const std::array<int, 3>& image, double reach) const;
   int level_of(double r) const { return std::min(std::ilogb(largest_radius_ / r), max_levels - 1); }
 
   double skin_;
-  std::vector<CandidatePair>& out_;
   double largest_radius_ = 0;
   Domain domain_;
   std::array<Level, max_levels> levels_;
@@ -102,8 +106,7 @@ class Search {
   std::vector<Entry> entries_;
 };
 
-Search::Search(std::span<const Body> bodies, const Cell& cell, double skin, std::vector<CandidatePair>& out)
-    : skin_(skin), out_(out) {
+Search::Search(std::span<const Body> bodies, const Cell& cell, double skin) : skin_(skin) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!bodies[i].position.allFinite() || !std::isfinite(bodies[i].radius))
       throw RunError("particle " + std::to_string(i) + " has a position or radius that is not finite");
@@ -172,14 +175,33 @@ void Search::fill_grids(std::span<const Body> bodies) {
   start_[buckets] = std::uint32_t(bodies.size());
 }
 
-void Search::run() {
+void Search::run(int threads, std::vector<CandidatePair>& out) const {
+  const std::uint32_t n = std::uint32_t(entries_.size());
+  if (threads == 1) return search_slots(0, n, out);
+  const std::size_t parts = std::size_t(threads);
+  std::vector<std::vector<CandidatePair>> found(parts);
+  std::vector<std::exception_ptr> thrown(parts);  // none may leave its thread
+  in_parts(parts, threads, [&](std::size_t t, std::size_t) {
+    try {
+      search_slots(std::uint32_t(detail::part(n, int(t), threads)), std::uint32_t(detail::part(n, int(t) + 1, threads)),
+                   found[t]);
+    } catch (...) {
+      thrown[t] = std::current_exception();
+    }
+  });
+  for (const auto& e : thrown)
+    if (e) std::rethrow_exception(e);
+  for (const auto& f : found) out.insert(out.end(), f.begin(), f.end());
+}
+
+void Search::search_slots(std::uint32_t first, std::uint32_t last, std::vector<CandidatePair>& out) const {
   for (int own = 0; own < max_levels; ++own) {
     const Level& level = levels_[own];
     if (level.count == 0) continue;
-    const std::uint32_t begin = start_[level.first_bucket], end = begin + level.count;
-    for (std::uint32_t slot = begin; slot < end; ++slot) {
+    const std::uint32_t begin = start_[level.first_bucket];
+    for (std::uint32_t slot = std::max(begin, first); slot < std::min(begin + level.count, last); ++slot) {
       for (int other = 0; other <= own; ++other) {
-        if (levels_[other].count > 0) search_level(slot, own, other);
+        if (levels_[other].count > 0) search_level(slot, own, other, out);
       }
     }
   }
@@ -187,7 +209,7 @@ void Search::run() {
 
 /// Every copy of a cell that may hold a partner has one place c in the lattice of all cells, and one image of the
 /// domain, floor(c / cells): walking over c meets each image once, however narrow the domain is.
-void Search::search_level(std::uint32_t slot, int own, int other) {
+void Search::search_level(std::uint32_t slot, int own, int other, std::vector<CandidatePair>& out) const {
   const Entry& e = entries_[slot];
   const Level& level = levels_[other];
   const double reach = e.r + level.r_max + skin_;
@@ -216,68 +238,66 @@ void Search::search_level(std::uint32_t slot, int own, int other) {
     for (std::int32_t y = same_z ? e.cell[1] : lower[1]; y <= upper[1]; ++y) {
       const int iy = image_of(y, level.cells[1]);
       const bool same_row = same_z && y == e.cell[1];
-      for (std::int32_t x = same_row ? e.cell[0] : lower[0]; x <= upper[0]; ++x) {
-        const int ix = image_of(x, level.cells[0]);
-        const bool same_cell = same_row && x == e.cell[0];
-        search_cell(slot, level, {x - ix * level.cells[0], y - iy * level.cells[1], z - iz * level.cells[2]},
-                    {ix, iy, iz}, same_cell ? slot + 1 : 0);
+      // Where every cell has its own bucket, the cells of a row follow each other and are one run for each image.
+      for (std::int32_t x = same_row ? e.cell[0] : lower[0], next; x <= upper[0]; x = next) {
+        const std::int32_t ix = image_of(x, level.cells[0]), origin = ix * level.cells[0];
+        next = level.dense() ? std::min(upper[0] + 1, origin + level.cells[0]) : x + 1;
+        const Vec3i cell{x - origin, y - iy * level.cells[1], z - iz * level.cells[2]};
+        const std::uint32_t bucket = level.bucket(cell);
+        const std::uint32_t first = same_row && x == e.cell[0] ? slot + 1 : 0;
+        search_run(e, std::max(start_[bucket], first), start_[bucket + std::uint32_t(next - x)], {ix, iy, iz}, out,
+                   [&](const Entry& b) { return level.dense() || b.cell == cell; });
       }
     }
   }
 }
 
-void Search::search_cell(std::uint32_t slot, const Level& other, const Vec3i& cell, const std::array<int, 3>& image,
-                         std::uint32_t first) {
-  const std::uint32_t bucket = other.bucket(cell);
-  const std::uint32_t begin = std::max(start_[bucket], first), end = start_[bucket + 1];
+template <class Inside>
+void Search::search_run(const Entry& a, std::uint32_t begin, std::uint32_t end, const std::array<int, 3>& image,
+                        std::vector<CandidatePair>& out, Inside&& inside) const {
   if (begin >= end) return;
-  const Entry& a = entries_[slot];
   const bool here = image == std::array{0, 0, 0};
   const Vec3 shift = here ? Vec3(Vec3::Zero()) : Vec3(domain_.h * Vec3(image[0], image[1], image[2]));
   for (std::uint32_t n = begin; n < end; ++n) {
     const Entry& b = entries_[n];
     const Vec3 d = (b.x - a.x) + shift;  // the same to the last bit when i and j change places
     const double reach = a.r + b.r + skin_;
-    if (!(d.squaredNorm() < reach * reach) || b.cell != cell) continue;
+    if (!(d.squaredNorm() < reach * reach) || !inside(b)) continue;
     for (int k = 0; k < 3; ++k) {
       if (std::abs(image[k]) > 1) refuse_cell(image, reach);
     }
     const std::uint8_t code = ImageCode::of(image[0], image[1], image[2]);
     const std::uint8_t opposite = 2 * ImageCode::none - code;
     if (a.index < b.index)
-      out_.push_back({a.index, b.index, code});
+      out.push_back({a.index, b.index, code});
     else if (a.index > b.index)
-      out_.push_back({b.index, a.index, opposite});
+      out.push_back({b.index, a.index, opposite});
     else
-      out_.push_back({a.index, a.index, std::max(code, opposite)});
+      out.push_back({a.index, a.index, std::max(code, opposite)});
   }
 }
 
-/// Sorts in place: by cycles of a counting sort over i, then the few of each i by j and image.
+/// By a counting sort over i, then the few of each i by j and image.
 void sort_pairs(std::vector<CandidatePair>& pairs, std::size_t particles) {
   std::vector<std::size_t> end(particles + 1, 0);
   for (const CandidatePair& p : pairs) ++end[p.i + 1];
   for (std::size_t i = 0; i < particles; ++i) end[i + 1] += end[i];
   std::vector<std::size_t> next(end.begin(), end.end() - 1);
-  for (std::size_t i = 0; i < particles; ++i) {
-    while (next[i] < end[i + 1]) {
-      CandidatePair& p = pairs[next[i]];
-      if (p.i == i)
-        ++next[i];
-      else
-        std::swap(p, pairs[next[p.i]++]);
-    }
-  }
+  // In place it would go round cycles in which every move waits for the last.
+  std::vector<CandidatePair> sorted(pairs.size());
+  for (const CandidatePair& p : pairs) sorted[next[p.i]++] = p;
+  pairs.swap(sorted);
   for (std::size_t i = 0; i < particles; ++i) std::sort(pairs.begin() + end[i], pairs.begin() + end[i + 1]);
 }
 
 }  // namespace
 
-void find_pairs(std::span<const Body> bodies, const Cell& cell, double skin, std::vector<CandidatePair>& out) {
+void find_pairs(std::span<const Body> bodies, const Cell& cell, double skin, int threads,
+                std::vector<CandidatePair>& out) {
   out.clear();
   if (bodies.empty()) return;
   DENSIFY_EXPECT(skin >= 0);
-  Search(bodies, cell, skin, out).run();
+  Search(bodies, cell, skin).run(threads, out);
   sort_pairs(out, bodies.size());
 }
 

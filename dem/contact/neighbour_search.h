@@ -27,6 +27,7 @@ struct CandidatePair {
 /// @param out     overwritten; its memory is reused
 /// @throws InputError  when a pair touches through more than one lattice translation: the cell is too small
 /// @throws RunError    when a position is not finite
-void find_pairs(std::span<const Body> bodies, const Cell& cell, double skin, std::vector<CandidatePair>& out);
+void find_pairs(std::span<const Body> bodies, const Cell& cell, double skin, int threads,
+                std::vector<CandidatePair>& out);
 
 }  // namespace densify::dem

@@ -8,10 +8,9 @@
 
 namespace densify::dem {
 
-/// Symmetric sum over the contacts of one particle, `along` n n^T + `across` (1 - n n^T) each [N/m], and their forces.
-struct alignas(64) StiffnessSum {
+/// Symmetric sum over the contacts of one particle, `along` n n^T + `across` (1 - n n^T) each.
+struct SymmetricSum {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
-  double force = 0;  ///< sum of the normal forces' magnitudes [N]
 
   void add(double along, double across, const Vec3& n) {
     const Vec3 m = (along - across) * n;
@@ -23,12 +22,29 @@ struct alignas(64) StiffnessSum {
     yz += m[1] * n[2];
   }
 
+  void operator+=(const SymmetricSum& o) { xx += o.xx, yy += o.yy, zz += o.zz, xy += o.xy, xz += o.xz, yz += o.yz; }
+
   /// Upper bound of the largest eigenvalue from trace and Frobenius norm, mean + sqrt(2) x standard deviation of the
   /// eigenvalues (Wolkowicz and Styan, Linear Algebra Appl. 29 (1980) 471, n = 3); independent of the axes, exact for
-  /// one contact and for an isotropic sum. [N/m]
+  /// one contact and for an isotropic sum.
   double largest_eigenvalue() const {
     const double mean = (xx + yy + zz) / 3, x = xx - mean, y = yy - mean, z = zz - mean;
     return mean + std::sqrt(2.0 / 3 * (x * x + y * y + z * z + 2 * (xy * xy + xz * xz + yz * yz)));
+  }
+};
+
+/// Sum of stiffness [N/m].
+struct alignas(64) StiffnessSum : SymmetricSum {
+  double force = 0;  ///< sum of the normal forces' magnitudes [N]
+};
+
+/// Sums of stiffness [N/m] and damping [N s/m].
+struct NodeSums {
+  SymmetricSum stiffness, damping;
+
+  void operator+=(const NodeSums& o) {
+    stiffness += o.stiffness;
+    damping += o.damping;
   }
 };
 

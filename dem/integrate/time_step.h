@@ -41,7 +41,14 @@ struct PunchNode {
   std::size_t wall = 0;
 };
 
-StepLimit critical_step(const Particles&, const ContactList&, const Cell&, const PairTable&, const ContactModel&,
-                        Walls&, const PunchNode&, PassTime, StepRule);
+/// The pairs of a contact list that may touch now, and the chunks in which a pass sums them up.
+struct PassPairs {
+  const NearList& near;
+  const Chunks& chunks;
+};
+
+/// The limit of all particles and of the punch; the same bits for every number of threads.
+StepLimit critical_step(const Particles&, const ContactList&, const PassPairs&, const Cell&, const PairTable&,
+                        const ContactModel&, Walls&, const PunchNode&, PassTime, StepRule, int threads);
 
 }  // namespace densify::dem

@@ -279,7 +279,7 @@ void reject_overlaps(const ImportedParticles& particles, const Cell& cell, doubl
                        "it lies; give coordinates near the cell, or check the length unit");
   }
   std::vector<CandidatePair> pairs;
-  find_pairs(bodies, cell, 0, pairs);
+  find_pairs(bodies, cell, 0, 1, pairs);
   double worst = largest_fraction;
   const CandidatePair* worst_pair = nullptr;
   for (const CandidatePair& p : pairs) {

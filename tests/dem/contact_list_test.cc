@@ -30,13 +30,13 @@ TEST(ContactList, NeckSurvivesAGap) {
   Particles p = spheres({{0, 0, 0}, {1.9, 0, 0}, {3.8, 0, 0}});
   ContactList list;
   list.skin = 0.2;
-  rebuild(list, p, {}, cold, both);
+  rebuild(list, p, {}, cold, both, 1);
   ASSERT_EQ(list.size(), 2u);
   list.neck[0] = {0.3, -0.01, 5, NeckPhase::sintering};
   list.tangential[1] = Vec3(0, 0.1, 0);
   p.body[0].position[0] = -5;
   p.body[2].position[0] = 9;
-  rebuild(list, p, {}, cold, both);
+  rebuild(list, p, {}, cold, both, 1);
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list.i(0), 0u);
   EXPECT_EQ(list.j(0), 1u);
@@ -54,14 +54,14 @@ TEST(ContactList, HistoriesFollowAcrossPeriodicFaces) {
       ContactList list;
       list.skin = 0.2;
       const Cell cell = cube(10);
-      rebuild(list, p, cell, cold, both);
+      rebuild(list, p, cell, cold, both, 1);
       ASSERT_EQ(list.size(), 1u);
       list.neck[0] = {0.3, -0.01, 5, NeckPhase::bonded};
       list.tangential[0] = Vec3(0.01, 0.02, 0.03);
       for (int n = 0; n < 60; ++n) {  // a walk of 30 units: three times around the cell
         p.body[0].position[k] += 0.5 * way;
         p.body[1].position[k] += 0.5 * way;
-        rebuild(list, p, cell, cold, both);
+        rebuild(list, p, cell, cold, both, 1);
         ASSERT_EQ(list.size(), 1u) << k << " " << way << " " << n;
         EXPECT_EQ(list.neck[0].radius, 0.3);
         EXPECT_EQ(list.tangential[0], Vec3(0.01, 0.02, 0.03));
@@ -79,12 +79,12 @@ TEST(ContactList, OwnImage) {
   Cell cell;
   cell.periodic = true;
   cell.h = Vec3(1.95, 5, 5).asDiagonal();
-  rebuild(list, p, cell, cold, both);
+  rebuild(list, p, cell, cold, both, 1);
   ASSERT_EQ(list.size(), 1u);
   list.neck[0].phase = NeckPhase::bonded;
   list.neck[0].radius = 0.4;
   p.body[0].position[0] += 1.5;
-  rebuild(list, p, cell, cold, both);
+  rebuild(list, p, cell, cold, both, 1);
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list.neck[0].radius, 0.4);
 }
@@ -95,7 +95,7 @@ TEST(ContactList, BucketsByMaterials) {
   p.material = {1, 0, 0, 1};
   ContactList list;
   list.skin = 0.2;
-  rebuild(list, p, {}, {1.0, 1.0}, both);
+  rebuild(list, p, {}, {1.0, 1.0}, both, 1);
   ASSERT_EQ(list.buckets.size(), 2u);
   EXPECT_EQ(list.buckets[0].material_a, 0);
   EXPECT_EQ(list.buckets[0].material_b, 0);
@@ -104,7 +104,7 @@ TEST(ContactList, BucketsByMaterials) {
   EXPECT_EQ(list.buckets[1].end - list.buckets[1].begin, 2u);
   EXPECT_EQ(list.i(0), 1u);
   list.neck[2] = {0.3, 0, 0, NeckPhase::bonded};
-  rebuild(list, p, {}, {1.0, 1.0}, both);
+  rebuild(list, p, {}, {1.0, 1.0}, both, 1);
   EXPECT_EQ(list.neck[2].radius, 0.3);
   EXPECT_EQ(list.neck[0].phase, NeckPhase::loose);
 }
@@ -114,7 +114,7 @@ TEST(ContactList, NoArraysWithoutNeed) {
   Particles p = spheres({{0, 0, 0}, {1.9, 0, 0}});
   ContactList list;
   list.skin = 0.2;
-  rebuild(list, p, {}, cold, {false, false});
+  rebuild(list, p, {}, cold, {false, false}, 1);
   EXPECT_TRUE(list.neck.empty());
   EXPECT_TRUE(list.tangential.empty());
 }
@@ -125,7 +125,7 @@ TEST(ContactList, Age) {
   ContactList list;
   list.skin = 0.2;
   Cell cell = cube(10);
-  rebuild(list, p, cell, cold, both);
+  rebuild(list, p, cell, cold, both, 1);
   EXPECT_EQ(list_age(list, p, cell, cold, 1), 0);
   p.body[1].position[1] += 0.05;
   EXPECT_NEAR(list_age(list, p, cell, cold, 1), 0.5, 1e-12);

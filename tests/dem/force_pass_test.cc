@@ -25,7 +25,7 @@ struct World {
   }
   static std::vector<Material> materials() { return {test::nickel_aluminide(), test::nickel_aluminide()}; }
   std::vector<ContactRecord> compute(const std::vector<double>& growth, double step) {
-    rebuild(list, particles, cell, {1.0, 1.0}, {model.friction.has_value(), false});
+    rebuild(list, particles, cell, {1.0, 1.0}, {model.friction.has_value(), false}, 1);
     ForcePass pass(model, 1);
     pass.list_changed(list, particles.size());
     std::vector<ContactRecord> record;

@@ -43,7 +43,7 @@ TEST(NearList, LeavesOutOnlyWhatIsFar) {
   auto& list = state.contacts;
   NearList near;
   EXPECT_TRUE(near.empty());
-  near.prune(list, state.particles, state.cell);
+  near.prune(list, state.particles, state.cell, 1);
   EXPECT_LT(near.places().size(), list.size());
   EXPECT_GT(near.places().size(), 0u);
   EXPECT_GT(near.skin(), 0);
@@ -57,6 +57,31 @@ TEST(NearList, LeavesOutOnlyWhatIsFar) {
         (b.position - a.position + state.cell.shift(list.image(k))).norm() - a.radius - b.radius - near.skin();
     EXPECT_EQ(kept, gap < 0) << k;
   }
+  NearList on_three_threads;
+  on_three_threads.prune(list, state.particles, state.cell, 3);
+  EXPECT_EQ(on_three_threads.places(), near.places());
+  EXPECT_EQ(on_three_threads.bucket_end(), near.bucket_end());
+}
+
+// Particles at rest use up no skin; what served long enough is pruned again with half of it, until it is as narrow as
+// it gets.
+TEST(NearList, NarrowsWhileNothingMoves) {
+  Simulation sim(testing::periodic_packing(1));
+  State state = sim.state();
+  NearList near;
+  near.prune(state.contacts, state.particles, state.cell, 1);
+  const double widest = near.skin();
+  int prunings = 0;
+  for (int pass = 0; pass < 10000; ++pass) {
+    near.count_pass();
+    if (!near.too_wide()) continue;
+    const double before = near.skin();
+    near.prune(state.contacts, state.particles, state.cell, 1);
+    EXPECT_EQ(near.skin(), 0.5 * before);
+    ++prunings;
+  }
+  EXPECT_EQ(prunings, 4);
+  EXPECT_EQ(near.skin(), widest / 16);
 }
 
 }  // namespace
