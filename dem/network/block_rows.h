@@ -28,6 +28,7 @@ struct BlockRows {
   std::vector<Vec3> branch;          ///< from the row's node to the column's
   std::vector<Tile<B, B>> diagonal;  ///< of each node
   std::vector<Tile<B, B>> inverse;   ///< of the diagonal, on its range
+  std::vector<double> scale;         ///< of what was summed up in the diagonal: its rounding is this times 1e-16
 
   std::size_t nodes() const { return diagonal.size(); }
 };

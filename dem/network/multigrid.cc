@@ -51,19 +51,18 @@ void invert_diagonal(BlockRows<B>& a) {
   for (std::size_t n = 0; n < a.nodes(); ++n) {
     const Block<B> d = as_matrix<B>(a.diagonal[n]);
     Eigen::Map<Block<B>> inverse(a.inverse[n].data());
-    const double largest = d.diagonal().maxCoeff();
+    // A body that nothing holds is a difference of large numbers: what is left must not be taken for a resistance.
+    constexpr double well_conditioned = 1e-8, rounding = 1e-12;
     const Eigen::LLT<Block<B>> factors(d);
-    constexpr double well_conditioned = 1e-8;
-    if (factors.info() == Eigen::Success &&
-        factors.matrixLLT().diagonal().minCoeff() > std::sqrt(well_conditioned * largest)) {
+    if (factors.info() == Eigen::Success && factors.matrixLLT().diagonal().array().square().minCoeff() >
+                                                well_conditioned * std::max(d.diagonal().maxCoeff(), a.scale[n])) {
       inverse = factors.solve(Block<B>::Identity());
       continue;
     }
     const Eigen::SelfAdjointEigenSolver<Block<B>> eigen(d);
     Eigen::Matrix<double, B, 1> values = Eigen::Matrix<double, B, 1>::Zero();
-    constexpr double rounding = 1e-11;
     for (int k = 0; k < B; ++k)
-      if (eigen.eigenvalues()[k] > rounding * largest) values[k] = 1 / eigen.eigenvalues()[k];
+      if (eigen.eigenvalues()[k] > rounding * a.scale[n]) values[k] = 1 / eigen.eigenvalues()[k];
     inverse = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
   }
 }
@@ -112,13 +111,12 @@ Multigrid<B>::Multigrid(BlockRows<B> matrix, std::size_t direct_nodes) : matrix_
 template <int B>
 void Multigrid<B>::factorise() {
   Eigen::SparseMatrix<double> a = assemble(matrix_);
-  const double largest = a.rows() > 0 ? Eigen::VectorXd(a.diagonal()).maxCoeff() : 0.0;
-  constexpr double share = 1e-6;
+  constexpr double share = 1e-6, of_scale = 1e-10;
   Eigen::SparseMatrix<double> held(a.rows(), a.rows());
   held.setIdentity();
   for (Eigen::Index k = 0; k < a.rows(); ++k) {
-    const double d = a.coeff(k, k);
-    held.coeffRef(k, k) = d > share * largest ? share * d : std::max(largest, std::numeric_limits<double>::min());
+    const double scale = matrix_.scale[std::size_t(k / B)];
+    held.coeffRef(k, k) = scale > 0 ? std::max(share * a.coeff(k, k), of_scale * scale) : 1.0;
   }
   a += held;
   factors_ = std::make_unique<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(a);
@@ -133,7 +131,8 @@ void Multigrid<B>::coarsen(std::size_t direct_nodes) {
   std::vector<double> size(n);
   for (std::size_t p = 0; p < n; ++p) {
     size[p] = norm<B>(matrix_.diagonal[p]);
-    if (size[p] == 0) aggregate_[p] = alone;
+    constexpr double rounding = 1e-13;
+    if (size[p] <= rounding * matrix_.scale[p]) aggregate_[p] = alone;
   }
   constexpr double weak = 0.02;
   auto strong = [&](std::size_t p, std::size_t e) {
@@ -182,6 +181,7 @@ void Multigrid<B>::coarsen(std::size_t direct_nodes) {
     if (aggregate_[p] != alone) member[next[aggregate_[p]]++] = std::uint32_t(p);
   BlockRows<6> coarse;
   coarse.diagonal.resize(bodies);
+  coarse.scale.assign(bodies, 0);
   std::vector<std::int64_t> place(bodies, -1);
   struct Entry {
     std::uint32_t column;
@@ -196,6 +196,7 @@ void Multigrid<B>::coarsen(std::size_t direct_nodes) {
       const std::uint32_t p = member[m];
       const Rigid<B> own = rigid_motions<B>(offset_[p]);
       diagonal += own.transpose() * as_matrix<B>(matrix_.diagonal[p]) * own;
+      coarse.scale[b] += matrix_.scale[p] * (1 + offset_[p].squaredNorm());
       for (std::size_t e = matrix_.begin[p]; e < matrix_.begin[p + 1]; ++e) {
         const std::uint32_t q = matrix_.column[e], other = aggregate_[q];
         if (other == alone) continue;
@@ -328,8 +329,9 @@ typename Multigrid<B>::Report Multigrid<B>::solve(const Stack<B, C>& b, Stack<B,
     report.converged = true;
     report.error = 0;
     for (std::size_t c = 0; c < std::size_t(C); ++c) {
-      const double fall = first[c] > 0 ? std::sqrt(std::max(0.0, rz[c] / first[c])) : 0.0;
-      done[c] = done[c] || fall <= goal.tolerance || squares[c] <= goal.floor[c] * goal.floor[c];
+      const bool small = squares[c] <= goal.floor[c] * goal.floor[c];
+      const double fall = first[c] > 0 ? std::sqrt(std::abs(rz[c] / first[c])) : 0.0;
+      done[c] = done[c] || small || fall <= goal.tolerance;
       if (done[c]) continue;
       report.converged = false;
       report.error = std::max(report.error, fall);

@@ -138,6 +138,11 @@ BlockRows<B> Probe<B>::matrix() const {
     Matrix(a.diagonal[edges[e].i].data()) +=
         both.transpose() * m.stiffness * both + turn.transpose() * m.turning * turn;
   }
+  for (const auto& d : a.diagonal) {
+    double trace = 0;
+    for (int k = 0; k < B; ++k) trace += d[std::size_t(k * B + k)];
+    a.scale.push_back(trace);
+  }
   return a;
 }
 
