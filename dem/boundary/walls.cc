@@ -26,6 +26,14 @@ namespace {
                  ": its centre is beyond the wall; the step or the mass factor is too large, or the wall too soft");
 }
 
+/// Spares the root where a particle is inside a cylinder without touching it.
+bool clearly_apart(const Wall& w, const Body& b) {
+  constexpr double rounding = 1e-12;
+  if (w.shape != WallShape::cylinder) return false;
+  const double x = b.position[0] - w.point[0], y = b.position[1] - w.point[1], reach = w.radius - b.radius;
+  return reach > 0 && x * x + y * y < reach * reach * (1 - rounding);
+}
+
 }  // namespace
 
 void Walls::require_inside(const Particles& particles) const {
@@ -83,11 +91,19 @@ void Walls::compute(Particles& particles, const PairTable& table, const ContactM
     step_stiffness_.assign(wall.size(), 0);
   }
   moduli_.resize(table.materials());
-  for (std::size_t m = 0; m < moduli_.size(); ++m) moduli_[m] = modulus(table, model, std::uint8_t(m));
+  growth_rates_.resize(table.materials());
+  for (std::size_t m = 0; m < moduli_.size(); ++m) {
+    moduli_[m] = modulus(table, model, std::uint8_t(m));
+    growth_rates_[m] = clock.step > 0 ? expansion_step[m] / clock.step : 0.0;
+  }
   Vec3 n;
   for (auto& c : contacts_) {
     const Wall& w = wall[c.wall];
     const Body& b = particles.body[c.particle];
+    if (clearly_apart(w, b)) {
+      c.tangential.setZero();
+      continue;
+    }
     const double g = gap(w, b.position, n);
     if (g >= b.radius) {
       c.tangential.setZero();
@@ -98,8 +114,7 @@ void Walls::compute(Particles& particles, const PairTable& table, const ContactM
     const Vec3 v = wall_velocity - b.velocity;
     const double vn = v.dot(n);
     const std::uint8_t m = particles.material[c.particle];
-    const double growth = clock.step > 0 ? expansion_step[m] * b.radius / clock.step : 0.0;
-    const NormalInput in = wall_input(b, g, vn - growth, clock);
+    const NormalInput in = wall_input(b, g, vn - growth_rates_[m] * b.radius, clock);
     with_wall_law(model, moduli_[m], [&](const auto& law) {
       const double fn = law.update(in).total;
       Vec3 f = fn * n;

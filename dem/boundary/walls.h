@@ -102,7 +102,8 @@ class Walls {
   std::vector<Wall> reference_;  // walls when the contacts were listed
   std::vector<Vec3> force_;
   std::vector<double> normal_force_, stiffness_, damping_, step_stiffness_;
-  std::vector<double> moduli_;  // of each material against the walls, of the last pass [Pa]
+  // Of each material against the walls, of the last pass [Pa, 1/s]:
+  std::vector<double> moduli_, growth_rates_;
 };
 
 /// Calls visit(law) with the law of a wall contact; `modulus` as of Walls::modulus [Pa].

@@ -35,24 +35,26 @@ void Chunks::build(const ContactList& list, const NearList& near, std::size_t pa
     }
   }
   in_parts(chunks, threads, [&](std::size_t first, std::size_t last) {
+    std::vector<std::uint32_t> slot(particles, 0);  // of each particle in the chunk, from 1; 0 for those not in it
     for (std::size_t c = first; c < last; ++c) {
       const std::uint32_t own = begin(c), beyond = begin(c + 1);
       auto& mine = others[c];
+      for (std::uint32_t p = own; p < beyond; ++p) slot[p] = p - own + 1;
       for (std::size_t b = 0; b < buckets; ++b)
         for (std::size_t n = near_begin(b, c); n < near_end(b, c); ++n)
-          if (const std::uint32_t j = list.j(places[n]); j < own || j >= beyond) mine.push_back(j);
+          if (const std::uint32_t j = list.j(places[n]); slot[j] == 0) {
+            slot[j] = 1;
+            mine.push_back(j);
+          }
       std::sort(mine.begin(), mine.end());
-      mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
+      for (std::uint32_t k = 0; k < mine.size(); ++k) slot[mine[k]] = beyond - own + k + 1;
       for (std::size_t b = 0; b < buckets; ++b)
         for (std::size_t n = near_begin(b, c); n < near_end(b, c); ++n) {
-          const std::uint32_t j = list.j(places[n]);
-          const std::uint32_t slot =
-              j >= own && j < beyond
-                  ? j - own
-                  : beyond - own + std::uint32_t(std::lower_bound(mine.begin(), mine.end(), j) - mine.begin());
           offsets_i_[n] = std::uint16_t(8 * (list.i(places[n]) - own));
-          offsets_j_[n] = 8 * slot;
+          offsets_j_[n] = 8 * (slot[list.j(places[n])] - 1);
         }
+      for (std::uint32_t p = own; p < beyond; ++p) slot[p] = 0;
+      for (const std::uint32_t p : mine) slot[p] = 0;
     }
   });
 

@@ -42,6 +42,19 @@ struct Kept {
   std::uint32_t place;
 };
 
+/// Those of all pairs that have a history, ascending by key.
+struct Histories {
+  std::vector<Kept> kept;
+  std::vector<std::uint32_t> begin;  // of those of each particle i
+
+  const Kept* find(const CandidatePair& pair) const {
+    const Key key = key_of(pair.i, pair.j, pair.image);
+    const Kept *const from = kept.data() + begin[pair.i], *const to = kept.data() + begin[pair.i + 1];
+    const Kept* const old = std::lower_bound(from, to, key, [](const Kept& a, Key k) { return a.key < k; });
+    return old != to && old->key == key ? old : nullptr;
+  }
+};
+
 std::vector<Eigen::Vector3i> wrap_into_cell(Particles& particles, const Cell& cell) {
   std::vector<Eigen::Vector3i> moved(particles.size(), Eigen::Vector3i::Zero());
   const Mat3 to_fraction = cell.h.inverse();
@@ -54,10 +67,9 @@ std::vector<Eigen::Vector3i> wrap_into_cell(Particles& particles, const Cell& ce
   return moved;
 }
 
-/// Keys under which pairs with a history will be found in the new list, sorted.
-std::vector<Kept> kept_histories(const ContactList& list, const std::vector<Eigen::Vector3i>& moved,
-                                 const std::vector<std::uint32_t>& id) {
-  std::vector<Kept> kept;
+/// Under the keys that pairs with a history will have in the new list.
+Histories histories(const ContactList& list, const std::vector<Eigen::Vector3i>& moved, const Particles& particles) {
+  std::vector<Kept> found;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const bool necked = !list.neck.empty() && list.neck[k].phase != NeckPhase::loose;
     const bool sheared = !list.tangential.empty() && !list.tangential[k].isZero(0);
@@ -66,14 +78,24 @@ std::vector<Kept> kept_histories(const ContactList& list, const std::vector<Eige
     if (!moved.empty()) {
       const Eigen::Vector3i n = ImageCode::unpack(image) + moved[list.j(k)] - moved[list.i(k)];
       if (n.cwiseAbs().maxCoeff() > 1)
-        throw RunError("a contact spans more than one period of the cell (particles " + std::to_string(id[list.i(k)]) +
-                       " and " + std::to_string(id[list.j(k)]) + "); use a larger cell");
+        throw RunError("a contact spans more than one period of the cell (particles " +
+                       std::to_string(particles.id[list.i(k)]) + " and " + std::to_string(particles.id[list.j(k)]) +
+                       "); use a larger cell");
       image = ImageCode::of(n[0], n[1], n[2]);
     }
-    kept.push_back({key_of(list.i(k), list.j(k), image), std::uint32_t(k)});
+    found.push_back({key_of(list.i(k), list.j(k), image), std::uint32_t(k)});
   }
-  std::sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) { return a.key < b.key; });
-  return kept;
+  // A counting sort over i, then the few of each i.
+  Histories out{std::vector<Kept>(found.size()), std::vector<std::uint32_t>(particles.size() + 1, 0)};
+  const auto particle = [](const Kept& k) { return std::size_t(k.key >> (ContactList::index_bits + 5)); };
+  for (const Kept& k : found) ++out.begin[particle(k) + 1];
+  for (std::size_t i = 0; i < particles.size(); ++i) out.begin[i + 1] += out.begin[i];
+  std::vector<std::uint32_t> next(out.begin.begin(), out.begin.end() - 1);
+  for (const Kept& k : found) out.kept[next[particle(k)]++] = k;
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    std::sort(out.kept.begin() + out.begin[i], out.kept.begin() + out.begin[i + 1],
+              [](const Kept& a, const Kept& b) { return a.key < b.key; });
+  return out;
 }
 
 }  // namespace
@@ -83,7 +105,7 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
   if (particles.size() > ContactList::index_mask)
     throw InputError("powder: more than " + std::to_string(ContactList::index_mask) + " particles are not supported");
   const auto moved = cell.periodic ? wrap_into_cell(particles, cell) : std::vector<Eigen::Vector3i>{};
-  const auto kept = kept_histories(list, moved, particles.id);
+  const Histories old_histories = histories(list, moved, particles);
   // From here on the old histories alone are needed; the other arrays are filled anew where they are.
   const auto old_tangential = std::move(list.tangential);
   const auto old_neck = std::move(list.neck);
@@ -100,10 +122,12 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
     return key_of(a.i, a.j, a.image) < key_of(b.i, b.j, b.image);
   };
   const std::size_t found = pairs.size();
-  for (const Kept& old : kept) {
+  std::size_t at_pair = 0;  // both are sorted
+  for (const Kept& old : old_histories.kept) {
     if (old_neck.empty() || old_neck[old.place].phase == NeckPhase::loose) continue;
     const CandidatePair pair = pair_of(old.key);
-    if (!std::binary_search(pairs.begin(), pairs.begin() + std::ptrdiff_t(found), pair, less)) pairs.push_back(pair);
+    while (at_pair < found && less(pairs[at_pair], pair)) ++at_pair;
+    if (at_pair == found || less(pair, pairs[at_pair])) pairs.push_back(pair);
   }
   if (pairs.size() > found) std::sort(pairs.begin(), pairs.end(), less);
 
@@ -132,10 +156,6 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
     if (start[b + 1] > start[b])
       list.buckets.push_back({start[b], start[b + 1], std::uint8_t(b / materials), std::uint8_t(b % materials)});
   std::vector<std::size_t> next(start.begin(), start.end() - 1);
-  const auto find_old = [&](Key key) {
-    const auto old = std::lower_bound(kept.begin(), kept.end(), key, [](const Kept& a, Key k) { return a.key < k; });
-    return old != kept.end() && old->key == key ? &*old : nullptr;
-  };
   std::vector<std::vector<CandidatePair>> of_bucket(start.size() - 1);
   std::vector<CandidatePair> rounds;
   for (std::size_t at = 0; at < pairs.size();) {
@@ -150,8 +170,8 @@ void rebuild(ContactList& list, Particles& particles, const Cell& cell, const st
         const std::size_t k = next[b]++;
         list.first[k] = p.i;
         list.second[k] = p.j | std::uint32_t(p.image) << ContactList::index_bits;
-        if (kept.empty()) continue;
-        const Kept* const old = find_old(key_of(p.i, p.j, p.image));
+        if (old_histories.kept.empty()) continue;
+        const Kept* const old = old_histories.find(p);
         if (!old) continue;
         if (needs.friction && !old_tangential.empty()) list.tangential[k] = old_tangential[old->place];
         if (needs.necks && !old_neck.empty()) list.neck[k] = old_neck[old->place];

@@ -21,7 +21,8 @@ void ForcePass::near_changed(const ContactList& list, std::size_t particles) {
 }
 
 void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cell, const PairTable& table,
-                        const std::vector<double>& expansion_step, PassTime clock, const StepStiffness* stiffness) {
+                        const std::vector<double>& expansion_step, PassTime clock, std::vector<ContactRecord>* record,
+                        const StepStiffness* stiffness) {
   if (near_.empty()) {
     near_.take_all(list);
     near_changed(list, particles.size());
@@ -38,7 +39,8 @@ void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cel
   const std::size_t stride = (model_.friction ? 8 : 4) + (stiffness ? 8 : 0);
   const FrictionModel model = model_.friction.value_or(FrictionModel{});
   const Friction friction(model, model.coefficient);
-  const SinglePairs singles = single_pairs(necks, hertz, model_.friction.has_value());
+  const GeneralLaw general = general_law(necks, hertz, model_.friction.has_value());
+  static_assert(sizeof(ContactRecord) == RecordLayout::size * sizeof(double));
   buckets_.clear();
   buckets_.reserve(list.buckets.size());  // jobs point to their laws
   for (const auto& named : list.buckets) {
@@ -67,7 +69,8 @@ void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cel
                          stride,
                          0,
                          stiffness ? stiffness->next_step : 0.0,
-                         singles.general},
+                         record ? record->data()->force.data() : nullptr,
+                         general},
                         law});
     buckets_.back().job.law = std::visit([](const auto& l) -> const void* { return &l; }, buckets_.back().law);
   }
@@ -95,7 +98,7 @@ void add(StiffnessSum& sum, const double* v) {
 }  // namespace
 
 void ForcePass::run_chunk(std::size_t chunk, Particles& particles, std::vector<double>& sums,
-                          std::vector<ContactRecord>* record, StepStiffness* stiffness) {
+                          StepStiffness* stiffness) {
   const bool rotates = model_.friction.has_value();
   const KeptRow kept{rotates, stiffness != nullptr};
   const std::uint32_t first = chunks_.begin(chunk), own = chunks_.size(chunk);
@@ -109,10 +112,7 @@ void ForcePass::run_chunk(std::size_t chunk, Particles& particles, std::vector<d
     job.first_particle = first;
     const std::size_t begin = chunks_.near_begin(b, chunk), end = chunks_.near_end(b, chunk);
     const bool necks = law.index() >= 2, hertz = law.index() % 2 == 1;
-    if (record)
-      single_pairs(necks, hertz, rotates).record(job, begin, end, record->data());
-    else
-      kernels_->kernel[necks][hertz][rotates](job, begin, end);
+    kernels_->kernel[necks][hertz][rotates](job, begin, end);
   }
   const double* row = sums.data();
   for (std::uint32_t p = first; p < first + own; ++p, row += stride) {
@@ -140,9 +140,9 @@ void ForcePass::add_incoming(std::size_t chunk, Particles& particles, StepStiffn
 void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cell, const PairTable& table,
                         const std::vector<double>& expansion_step, PassTime clock, std::vector<ContactRecord>* record,
                         StepStiffness* stiffness) {
-  prepare(particles, list, cell, table, expansion_step, clock, stiffness);
-  near_.count_pass();
   if (record) record->assign(list.size(), ContactRecord{});
+  prepare(particles, list, cell, table, expansion_step, clock, record, stiffness);
+  near_.count_pass();
   if (stiffness) stiffness->of.resize(particles.size());
   const std::size_t kept = KeptRow{model_.friction.has_value(), stiffness != nullptr}.size() * chunks_.others().size();
   if (for_others_.size() != kept) for_others_ = std::vector<double>(kept);
@@ -151,7 +151,7 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
   in_parts(std::size_t(threads), threads, [&](std::size_t t, std::size_t) {
     const std::size_t end = detail::part(chunks_.count(), int(t) + 1, threads);
     for (std::size_t c = detail::part(chunks_.count(), int(t), threads); c < end; ++c)
-      run_chunk(c, particles, sums_[t], record, stiffness);
+      run_chunk(c, particles, sums_[t], stiffness);
   });
   in_parts(chunks_.count(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) add_incoming(c, particles, stiffness);

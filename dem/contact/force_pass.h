@@ -20,11 +20,11 @@ struct PassTime {
 /// What one contact did in a recorded pass; zero for pairs that do not touch.
 struct ContactRecord {
   Vec3 force = Vec3::Zero();        ///< on particle i [N]
-  Vec3 couple = Vec3::Zero();       ///< n x F_t; times the lever of i or j it is the torque on i or j [N]
-  double lever_i = 0, lever_j = 0;  ///< centre to contact point [m]
   double normal = 0;                ///< normal force, tension positive [N]
-  double sintering = 0;             ///< F_sint in it [N]
-  double damping = 0;               ///< damper force in it [N]
+  Vec3 couple = Vec3::Zero();       ///< n x F_t; times the lever of i or j it is the torque on i or j [N]
+  double sintering = 0;             ///< F_sint in the normal force [N]
+  double lever_i = 0, lever_j = 0;  ///< centre to contact point, with friction [m]
+  double damping = 0;               ///< damper force in the normal force [N]
   double elastic_energy = 0;        ///< stored in the normal spring [J]
   bool touching = false;
 };
@@ -66,8 +66,8 @@ class ForcePass {
   };
 
   void prepare(Particles&, ContactList&, const Cell&, const PairTable&, const std::vector<double>& expansion_step,
-               PassTime, const StepStiffness*);
-  void run_chunk(std::size_t chunk, Particles&, std::vector<double>& sums, std::vector<ContactRecord>*, StepStiffness*);
+               PassTime, std::vector<ContactRecord>*, const StepStiffness*);
+  void run_chunk(std::size_t chunk, Particles&, std::vector<double>& sums, StepStiffness*);
   void add_incoming(std::size_t chunk, Particles&, StepStiffness*) const;
 
   ContactModel model_;

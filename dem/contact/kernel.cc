@@ -114,7 +114,32 @@ inline void find(const KernelJob& job, const Block& block, Place& found) {
   if (needs_radii<Law> || friction || job.growing) found.radius_i = gather_i(own, block, 3);
 }
 
-/// `plain`: no growth, no deforming cell, no stiffness sums.
+/// Writes the records of a block, but for pairs that the general law has to do.
+template <class Law, bool friction>
+inline void write_records(const Law& law, const KernelJob& job, const Block& block, const FrameOf<Numbers>& frame,
+                          const NormalForceOf<Numbers>& normal, const Numbers& u, const Condition& springs,
+                          const Result& result, unsigned lanes) {
+  const SpringRecordOf<Numbers> spring = spring_record(law, frame, normal, u, springs);
+  const Numbers none = 0.0;
+  Row rows[3][width];
+  rows_of<width>({result.force.c[0], result.force.c[1], result.force.c[2], normal.total}, rows[0]);
+  rows_of<width>({none, none, none, normal.sintering}, rows[1]);
+  rows_of<width>({none, none, spring.damping, spring.energy}, rows[2]);
+  if constexpr (friction) {
+    rows_of<width>({result.couple.c[0], result.couple.c[1], result.couple.c[2], normal.sintering}, rows[1]);
+    rows_of<width>({result.lever_i, result.lever_j, spring.damping, spring.energy}, rows[2]);
+  }
+  for (int l = 0; l < width; ++l) {
+    if (!(lanes >> l & 1)) continue;
+    double* const record = job.record + RecordLayout::size * std::size_t(block.place[l]);
+    rows[0][l].store(record + RecordLayout::force);
+    rows[1][l].store(record + RecordLayout::couple);
+    rows[2][l].store(record + RecordLayout::levers);
+    *reinterpret_cast<bool*>(record + RecordLayout::touching) = true;
+  }
+}
+
+/// `plain`: no growth, no deforming cell, no stiffness sums, no record.
 template <class Law, bool friction, bool plain>
 inline void act(const Law& law, const KernelJob& job, const Block& block, const Place& found, Result& result) {
   PairOf<Numbers> pair;
@@ -193,6 +218,17 @@ inline void act(const Law& law, const KernelJob& job, const Block& block, const 
     const auto present_only = [&](const Numbers& x) { return select(present, x, none); };
     result.stiffness[0] = {present_only(s.xx), present_only(s.yy), present_only(s.zz), present_only(s.xy)};
     result.stiffness[1] = {present_only(s.xz), present_only(s.yz), present_only(s.force), none};
+  }
+  if (!plain && job.record) {
+    const unsigned lanes = bits(present) & ~general;
+    if constexpr (has_necks<Law>) {
+      Condition springs = present;
+      if (law.settings.model == SinteringModel::viscous) springs = springs & Condition{~necks.phase.sintering.v};
+      write_records<Law, friction>(law, job, block, frame, normal, select(necks.necked, neck.elastic, frame.in.overlap),
+                                   springs, result, lanes);
+    } else {
+      write_records<Law, friction>(law, job, block, frame, normal, frame.in.overlap, present, result, lanes);
+    }
   }
   if constexpr (has_necks<Law>) {
     Row after[width];
@@ -304,7 +340,7 @@ template <class Law, bool friction, bool plain>
 
 template <class Law, bool friction>
 void run(const KernelJob& job, std::size_t begin, std::size_t end) {
-  if (job.gradient || job.growing || job.next_step > 0)
+  if (job.gradient || job.growing || job.next_step > 0 || job.record)
     run_pairs<Law, friction, false>(job, begin, end);
   else
     run_pairs<Law, friction, true>(job, begin, end);

@@ -8,6 +8,15 @@
 
 namespace densify::dem {
 
+/// Places in a ContactRecord, in doubles: force and normal are one row of four, couple and sintering the next, and the
+/// last the levers of i and j, damping and energy.
+struct RecordLayout {
+  static constexpr int size = 13, force = 0, couple = 4, levers = 8, touching = 12;
+};
+
+struct KernelJob;
+using GeneralLaw = void (*)(const KernelJob&, std::size_t near, double* of_i, double* of_j, double* stiffness);
+
 /// The near pairs of one bucket in one chunk of the particles, and everything they read and write.
 struct KernelJob {
   // Near pairs:
@@ -37,10 +46,11 @@ struct KernelJob {
   std::size_t stride;
   std::uint32_t first_particle;
   double next_step;  ///< of StepStiffness [s]; 0: none asked for
+  double* record;    ///< of each pair of the contact list, as RecordLayout; null: none asked for
 
-  /// The pair at a place of the near list by the general law; fills 8 doubles each: what i receives, what j receives
-  /// (force and 0, torque and 0), and the stiffness that both receive.
-  void (*general)(const KernelJob&, std::size_t near, double* of_i, double* of_j, double* stiffness);
+  /// The pair at a place of the near list by the general law; fills its record, and 8 doubles each: what i receives,
+  /// what j receives (force and 0, torque and 0), and the stiffness that both receive.
+  GeneralLaw general;
 };
 
 /// Near pairs begin to end of a job.

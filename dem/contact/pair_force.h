@@ -132,6 +132,23 @@ FrictionOf<T> friction_of(const Law& law, const PairUniform& uniform, const Pair
   return f;
 }
 
+/// What a record keeps of a normal spring, and no force needs.
+template <class T>
+struct SpringRecordOf {
+  T damping;  ///< the damper's part of the normal force [N]
+  T energy;   ///< [J]
+};
+
+/// `u` is the spring's displacement after the step; `springs`: whether there is one.
+template <class Law, class T, class Condition>
+SpringRecordOf<T> spring_record(const Law& law, const FrameOf<T>& frame, const NormalForceOf<T>& normal, const T& u,
+                                const Condition& springs) {
+  const auto& spring = spring_of(law);
+  const T none = 0.0, radius = frame.in.elastic_radius;
+  return {select(springs, normal.total - normal.sintering - spring.force(u, radius), none),
+          select(springs, spring.energy(u, radius), none)};
+}
+
 /// What a pair adds to the StiffnessSum of both its particles: xx yy zz xy, xz yz force.
 template <class T>
 struct StiffnessOf {

@@ -23,29 +23,29 @@ struct Given {
 
 /// Fills the parts of a record that no force needs.
 template <class Law>
-void keep(const Law& law, const NormalInput& in, const NormalForce& f, const NeckHistory* neck, ContactRecord& record) {
+void keep(const Law& law, const FrameOf<double>& frame, const NormalForce& f, const NeckHistory* neck,
+          ContactRecord& record) {
   record.normal = f.total;
   record.sintering = f.sintering;
   record.touching = true;
-  double u = in.overlap;
+  double u = frame.in.overlap;
   bool springs = true;  // a viscous contact has no spring to store energy in
   if constexpr (has_necks<Law>) {
     if (neck->phase != NeckPhase::loose) {
       u = neck->elastic;
       springs = law.settings.model != SinteringModel::viscous || !Law::flows(neck->phase);
-    } else if (in.overlap >= 0) {
+    } else if (u >= 0) {
       springs = false;  // the neck was lost in this very step
     }
   }
-  if (!springs) return;
-  const auto& spring = spring_of(law);
-  record.elastic_energy = spring.energy(u, in.elastic_radius);
-  record.damping = f.total - f.sintering - spring.force(u, in.elastic_radius);
+  const auto kept = spring_record(law, frame, f, u, springs);
+  record.damping = kept.damping;
+  record.elastic_energy = kept.energy;
 }
 
-/// The near pair at a place; false when it does not touch.
+/// The near pair at a place.
 template <class Law, bool friction>
-bool pair(const KernelJob& job, std::size_t near, Given& given, ContactRecord* record) {
+void pair(const KernelJob& job, std::size_t near, Given& given) {
   const Law& law = *static_cast<const Law*>(job.law);
   const std::uint32_t place = job.place[near], coded = job.second[place];
   const std::uint32_t i = job.first_particle + job.offset_i[near] / 8;
@@ -66,7 +66,7 @@ bool pair(const KernelJob& job, std::size_t near, Given& given, ContactRecord* r
   double* const sheared = friction ? job.tangential + 3 * std::size_t(place) : nullptr;
   if (!(d2 < pair.reach * pair.reach) && !necked) {
     if constexpr (friction) sheared[0] = sheared[1] = sheared[2] = 0;
-    return false;
+    return;
   }
   pair.velocity = triple(b + 4) - triple(a + 4);
   if (job.gradient) add_flow(pair, job.gradient);
@@ -86,6 +86,7 @@ bool pair(const KernelJob& job, std::size_t near, Given& given, ContactRecord* r
     normal = law.update(frame.in);
   }
   Triple force = normal.total * frame.normal;
+  ContactRecord* const record = job.record ? reinterpret_cast<ContactRecord*>(job.record) + place : nullptr;
   if constexpr (friction) {
     const double lever_i = pair.radius_i + 0.5 * frame.in.overlap, lever_j = pair.radius_j + 0.5 * frame.in.overlap;
     const Triple spin =
@@ -116,46 +117,27 @@ bool pair(const KernelJob& job, std::size_t near, Given& given, ContactRecord* r
   }
   if (record) {
     record->force = Vec3(force.x, force.y, force.z);
-    keep(law, frame.in, normal, neck, *record);
+    keep(law, frame, normal, neck, *record);
   }
-  return true;
 }
 
 template <class Law, bool friction>
 void general(const KernelJob& job, std::size_t near, double* of_i, double* of_j, double* stiffness) {
   Given given;
-  pair<Law, friction>(job, near, given, nullptr);
+  pair<Law, friction>(job, near, given);
   std::copy_n(given.i, 8, of_i);
   std::copy_n(given.j, 8, of_j);
   std::copy_n(given.stiffness, 8, stiffness);
 }
 
-template <class Law, bool friction>
-void record_pairs(const KernelJob& job, std::size_t begin, std::size_t end, ContactRecord* record) {
-  constexpr std::size_t forces = friction ? 8 : 4;
-  for (std::size_t n = begin; n < end; ++n) {
-    const std::uint32_t place = job.place[n];
-    Given given;
-    if (!pair<Law, friction>(job, n, given, record + place)) continue;
-    double* const i = job.sums + job.stride * (job.offset_i[n] / 8);
-    double* const j = job.sums + job.stride * (job.offset_j[n] / 8);
-    for (std::size_t k = 0; k < forces; ++k) i[k] += given.i[k];
-    for (std::size_t k = 0; k < forces; ++k) j[k] += given.j[k];
-    if (job.next_step > 0)
-      for (double* sum : {i, j})
-        for (std::size_t k = 0; k < 8; ++k) sum[forces + k] += given.stiffness[k];
-  }
-}
-
 template <class Law>
-SinglePairs of_law(bool friction) {
-  if (friction) return {general<Law, true>, record_pairs<Law, true>};
-  return {general<Law, false>, record_pairs<Law, false>};
+GeneralLaw of_law(bool friction) {
+  return friction ? general<Law, true> : general<Law, false>;
 }
 
 }  // namespace
 
-SinglePairs single_pairs(bool necks, bool hertz, bool friction) {
+GeneralLaw general_law(bool necks, bool hertz, bool friction) {
   if (necks)
     return hertz ? of_law<SinteringContact<HertzSpring>>(friction) : of_law<SinteringContact<LinearSpring>>(friction);
   return hertz ? of_law<KelvinVoigt<HertzSpring>>(friction) : of_law<KelvinVoigt<LinearSpring>>(friction);

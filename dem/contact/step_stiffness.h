@@ -28,7 +28,7 @@ struct SymmetricSum {
   /// eigenvalues (Wolkowicz and Styan, Linear Algebra Appl. 29 (1980) 471, n = 3); independent of the axes, exact for
   /// one contact and for an isotropic sum.
   double largest_eigenvalue() const {
-    const double mean = (xx + yy + zz) / 3, x = xx - mean, y = yy - mean, z = zz - mean;
+    const double mean = (xx + yy + zz) * (1.0 / 3), x = xx - mean, y = yy - mean, z = zz - mean;
     return mean + std::sqrt(2.0 / 3 * (x * x + y * y + z * z + 2 * (xy * xy + xz * xz + yz * yz)));
   }
 };

@@ -129,6 +129,28 @@ std::size_t add_bucket(const Law& law, const GuardView& view, std::size_t first,
   return list.size();
 }
 
+[[noreturn]] void refuse_deep_contact(const GuardView& view, std::size_t k) {
+  const State& s = view.state;
+  throw RunError("particles " + std::to_string(s.particles.id[s.contacts.i(k)]) + " and " +
+                 std::to_string(s.particles.id[s.contacts.j(k)]) + " have gone too far into each other (overlap " +
+                 number(overlap_of(s, k)) + " of the smaller radius, at most " +
+                 number(view.setup.integration.guards.largest_overlap) +
+                 "); the contacts are too soft for the load, or the step is too large");
+}
+
+void require_no_deep_contact(const GuardView& view) {
+  const State& s = view.state;
+  const ImageShifts shifts(s.cell);
+  const Body* const body = s.particles.body.data();
+  const double limit = view.setup.integration.guards.largest_overlap;
+  for (const std::uint32_t k : view.near.places()) {
+    const Body &a = body[s.contacts.i(k)], &b = body[s.contacts.j(k)];
+    const double least = a.radius + b.radius - limit * std::min(a.radius, b.radius);
+    const Vec3 branch = b.position - a.position + shifts[s.contacts.image(k)];
+    if (least > 0 && branch.squaredNorm() < least * least) refuse_deep_contact(view, k);
+  }
+}
+
 EnergySums add_contacts(const GuardView& view) {
   const State& s = view.state;
   const ImageShifts shifts(s.cell);
@@ -142,12 +164,7 @@ EnergySums add_contacts(const GuardView& view) {
     std::size_t deep = s.contacts.size();
     with_law(model, row, !s.contacts.neck.empty(),
              [&](const auto& law) { deep = add_bucket(law, view, b == 0 ? 0 : ends[b - 1], ends[b], shifts, sums); });
-    if (deep == s.contacts.size()) continue;
-    throw RunError("particles " + std::to_string(s.particles.id[s.contacts.i(deep)]) + " and " +
-                   std::to_string(s.particles.id[s.contacts.j(deep)]) + " have gone too far into each other (overlap " +
-                   number(overlap_of(s, deep)) + " of the smaller radius, at most " +
-                   number(view.setup.integration.guards.largest_overlap) +
-                   "); the contacts are too soft for the load, or the step is too large");
+    if (deep != s.contacts.size()) refuse_deep_contact(view, deep);
   }
   return sums;
 }
@@ -241,7 +258,7 @@ void Guards::forget() {
 void Guards::require_sound(const GuardView& view) const {
   if (view.setup.integration.guards.guarding == Guarding::off) return require_finite(view.state);
   look_at_particles(view);
-  add_contacts(view);
+  require_no_deep_contact(view);
 }
 
 void Guards::look_at_particles(const GuardView& view) const {

@@ -28,12 +28,13 @@ void equalise(Particles& particles, const StepStiffness& sums, const ContactMode
     const double one = first_contact_stiffness(model, table.row(m, m), 1, sums.next_step, safety);
     (model.elasticity == Elasticity::hertz ? per_radius : first)[m] = one;
   }
+  const double softness = 1 / mass_for_step(1 + share, sums.next_step, safety);
   in_parts(particles.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       Body& b = particles.body[p];
       const std::uint8_t m = particles.material[p];
       const double k = std::max(sums.of[p].largest_eigenvalue(), first[m] + per_radius[m] * b.radius);
-      b.inverse_mass = 1 / mass_for_step((1 + share) * k, sums.next_step, safety);
+      b.inverse_mass = softness / k;
     }
   });
 }

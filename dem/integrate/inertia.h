@@ -39,8 +39,9 @@ void equalise(Particles&, const StepStiffness& sums, const ContactModel&, const 
 /// touches. The force on q is that on the punch plus the sum of F_iz zeta_i, which vanishes at rest: nothing static
 /// changes.
 struct Column {
-  double bottom = 0, height = 0;  ///< [m]
-  double zeta(const Body& b) const { return std::clamp((b.position[2] - bottom) / height, 0.0, 1.0); }
+  double bottom, height;  ///< [m]
+  double inverse_height = 1 / height;
+  double zeta(const Body& b) const { return std::clamp((b.position[2] - bottom) * inverse_height, 0.0, 1.0); }
 };
 
 /// e in the masses of a column: a contact's stretch is n.(x'_j - x'_i) + s q with s = n_z (zeta_j - zeta_i), and its

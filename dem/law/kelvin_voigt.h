@@ -31,7 +31,7 @@ struct KelvinVoigt {
   T step_stiffness(const NormalInputOf<T>& in, double next_step) const {
     const T k = spring.tangent(in.overlap + smaller(T(0.0), in.rate) * next_step, in.elastic_radius);
     if (damping_ratio == 0) return k;
-    return k + 4 * damping_ratio * root(in.reduced_mass * k) / next_step;
+    return k + (4 * damping_ratio / next_step) * root(in.reduced_mass * k);
   }
 
   Linearisation linearise(const NormalInput& in) const {

@@ -174,10 +174,11 @@ struct SinteringContact {
     // A neck that is about to reach equilibrium or that freezes stiffens within one step.
     const bool soft =
         h.phase == NeckPhase::sintering || h.phase == NeckPhase::activating || h.phase == NeckPhase::reactivating;
-    const auto eta = [&](double a) {
-      return h.phase == NeckPhase::sintering ? viscosity(a) : series_viscosity(h.phase, a, activity(h, in.time));
+    const auto flow = [&](double a2) {
+      if (h.phase == NeckPhase::sintering) return Flow<double>{mobility_factor, a2 * a2};
+      return flow_of(series_viscosity(h.phase, std::sqrt(a2), activity(h, in.time)));
     };
-    return step_stiffness(in, NeckOf<double>{h.radius, h.elastic}, h.phase == NeckPhase::loose, soft, eta, next_step);
+    return step_stiffness(in, NeckOf<double>{h.radius, h.elastic}, h.phase == NeckPhase::loose, soft, flow, next_step);
   }
 
   /// The same for contacts in settled phases.
@@ -185,7 +186,11 @@ struct SinteringContact {
   T step_stiffness(const NormalInputOf<T>& in, const NeckOf<T>& neck, const PhasesOf<Condition>& phase,
                    double next_step) const {
     return step_stiffness(
-        in, neck, phase.loose, phase.sintering, [&](const T& a) { return viscosity(a); }, next_step);
+        in, neck, phase.loose, phase.sintering,
+        [&](const T& a2) {
+          return Flow<T>{mobility_factor, a2 * a2};
+        },
+        next_step);
   }
 
   Linearisation linearise(const NormalInput& in, const NeckHistory& h) const {
@@ -207,33 +212,42 @@ struct SinteringContact {
   }
 
  private:
-  /// `soft` tells which flow, `eta` gives the viscosity in series for a neck radius.
-  template <class T, class Condition, class Viscosity>
-  T step_stiffness(const NormalInputOf<T>& in, const NeckOf<T>& neck, const Condition& is_loose, const Condition& soft,
-                   const Viscosity& eta, double next_step) const {
-    const T approach = larger(T(0.0), -in.rate) * next_step;
-    const T k = loose.spring.tangent(neck.elastic - approach, in.elastic_radius);
-    T stiffness = k + 2 * damper(in, k) / next_step;
-    if (any(soft)) {
-      NormalInputOf<T> later = in;
-      later.overlap = in.overlap - approach;
-      const T a = settings.neck == NeckGrowth::overlap
-                      ? larger(neck_of_overlap(later), smallest_neck(in))
-                      : root(neck.radius * neck.radius + 2 * in.sintering_radius * approach);
-      if (settings.model == SinteringModel::viscous)
-        stiffness = select(soft, larger(stiffness, 2 * viscosity(a) / next_step), stiffness);
-      else if (settings.update != MaxwellUpdate::trapezoidal)
-        stiffness = select(
-            soft, select(a >= largest_neck(in), stiffness, stiffness / (1 + 0.5 * k * next_step / eta(a))), stiffness);
-    }
-    return any(is_loose) ? select(is_loose, loose.step_stiffness(in, next_step), stiffness) : stiffness;
-  }
-
   /// 1/eta as a fraction, mobility/per: one division less.
   template <class T>
   struct Flow {
     T mobility, per;
   };
+
+  static Flow<double> flow_of(double eta) { return std::isinf(eta) ? Flow<double>{0, 1} : Flow<double>{1, eta}; }
+
+  /// `soft` tells which flow, `flow` gives the flow in series for the square of a neck radius.
+  template <class T, class Condition, class FlowOf>
+  T step_stiffness(const NormalInputOf<T>& in, const NeckOf<T>& neck, const Condition& is_loose, const Condition& soft,
+                   const FlowOf& flow, double next_step) const {
+    const T approach = larger(T(0.0), -in.rate) * next_step;
+    const T k = loose.spring.tangent(neck.elastic - approach, in.elastic_radius);
+    T stiffness = k + (2 / next_step) * damper(in, k);
+    if (any(soft)) {
+      T a2;
+      if (settings.neck == NeckGrowth::overlap) {
+        NormalInputOf<T> later = in;
+        later.overlap = in.overlap - approach;
+        const T a = larger(neck_of_overlap(later), smallest_neck(in));
+        a2 = a * a;
+      } else {
+        a2 = neck.radius * neck.radius + 2 * in.sintering_radius * approach;
+      }
+      if (settings.model == SinteringModel::viscous) {
+        stiffness = select(soft, larger(stiffness, (2 / (next_step * mobility_factor)) * (a2 * a2)), stiffness);
+      } else if (settings.update != MaxwellUpdate::trapezoidal) {
+        const T largest = largest_neck(in);
+        const Flow<T> f = flow(a2);
+        stiffness = select(soft & (a2 < largest * largest),
+                           stiffness * f.per / (f.per + (0.5 * next_step) * k * f.mobility), stiffness);
+      }
+    }
+    return any(is_loose) ? select(is_loose, loose.step_stiffness(in, next_step), stiffness) : stiffness;
+  }
 
   /// Advances the elastic displacement by the theta rule for du_e/dt = rate - F(u_e)/eta, one Newton step: theta 1 is
   /// backward Euler (L-stable), 1/2 is (4.67).
@@ -278,10 +292,7 @@ struct SinteringContact {
     if (settings.model == SinteringModel::viscous && flows(h.phase) && h.phase != NeckPhase::arriving)
       return {viscosity(neck) * in.rate + f_sint, f_sint};
     Flow<double> flow{mobility_factor, (neck * neck) * (neck * neck)};
-    if (h.phase != NeckPhase::sintering) {
-      const double eta = series_viscosity(h.phase, neck, share);
-      flow = std::isinf(eta) ? Flow<double>{0, 1} : Flow<double>{1, eta};
-    }
+    if (h.phase != NeckPhase::sintering) flow = flow_of(series_viscosity(h.phase, neck, share));
     return relax(in, flow, f_sint, h.elastic);
   }
 

@@ -18,7 +18,10 @@ struct LinearSpring {
   T tangent(const T& /*u*/, const T& /*radius*/) const {
     return stiffness;
   }
-  double energy(double u, double /*radius*/) const { return 0.5 * stiffness * u * u; }
+  template <class T>
+  T energy(const T& u, const T& /*radius*/) const {
+    return 0.5 * stiffness * u * u;
+  }
   /// The displacement that carries a force: inverse of `force`.
   double displacement(double f, double /*radius*/) const { return f / stiffness; }
   /// Stiffness that bounds a contact about to form [N/m].
@@ -39,8 +42,10 @@ struct HertzSpring {
   T tangent(const T& u, const T& radius) const {
     return select(u < 0, 1.5 * four_thirds_modulus * root(-u * radius), tensile_stiffness(radius));
   }
-  double energy(double u, double radius) const {
-    return u < 0 ? 0.4 * four_thirds_modulus * u * u * std::sqrt(-u * radius) : 0.5 * tensile_stiffness(radius) * u * u;
+  template <class T>
+  T energy(const T& u, const T& radius) const {
+    return select(u < 0, 0.4 * four_thirds_modulus * u * u * root(-u * radius),
+                  0.5 * tensile_stiffness(radius) * u * u);
   }
   double displacement(double f, double radius) const {
     return f < 0 ? -std::pow(-f / (four_thirds_modulus * std::sqrt(radius)), 2.0 / 3) : f / tensile_stiffness(radius);

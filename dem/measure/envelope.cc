@@ -15,20 +15,46 @@ double sphere_volume(double r) {
 }
 
 /// Points spread evenly in the unit ball: a Fibonacci spiral with radii at equal shares of volume.
-const std::array<Vec3, 256>& ball_points() {
+struct BallPoints {
+  static constexpr std::size_t count = 256;
+  std::array<double, count> x, y, z;
+};
+
+const BallPoints& ball_points() {
   static const auto points = [] {
-    std::array<Vec3, 256> p;
+    BallPoints p;
     const double golden = M_PI * (3 - std::sqrt(5.0));
-    const auto n = double(p.size());
-    for (std::size_t k = 0; k < p.size(); ++k) {
+    const auto n = double(BallPoints::count);
+    for (std::size_t k = 0; k < BallPoints::count; ++k) {
       const double z = 1 - (2 * double(k) + 1) / n, rho = std::sqrt(1 - z * z);
       // A second irrational sequence decouples the radius from the direction.
       const double share = std::fmod(0.5 + double(k) * 0.7548776662466927, 1.0);
-      p[k] = std::cbrt(share) * Vec3(rho * std::cos(golden * double(k)), rho * std::sin(golden * double(k)), z);
+      p.x[k] = std::cbrt(share) * rho * std::cos(golden * double(k));
+      p.y[k] = std::cbrt(share) * rho * std::sin(golden * double(k));
+      p.z[k] = std::cbrt(share) * z;
     }
     return p;
   }();
   return points;
+}
+
+using Depths = std::array<double, BallPoints::count>;  // of each point in a region, negative outside
+
+/// For points of a ball, one coordinate of it: at most as deep as between two planes.
+void lower_to_planes(Depths& depth, const Depths& point, double centre, double r, double low, double high) {
+  for (std::size_t k = 0; k < BallPoints::count; ++k) {
+    const double x = centre + r * point[k];
+    depth[k] = std::min(depth[k], std::min(x - low, high - x));
+  }
+}
+
+/// And as deep as in a cylinder about the z axis (in squares).
+void lower_to_cylinder(Depths& depth, const BallPoints& points, const Vec3& centre, double r, double radius) {
+  const double cx = centre[0], cy = centre[1], square = radius * radius;
+  for (std::size_t k = 0; k < BallPoints::count; ++k) {
+    const double x = cx + r * points.x[k], y = cy + r * points.y[k];
+    depth[k] = std::min(depth[k], square - (x * x + y * y));
+  }
 }
 
 }  // namespace
@@ -110,24 +136,27 @@ double inner_relative_density(const Simulation& sim, double distance) {
   if (high[2] <= low[2] || (round ? radius <= 0 : high[0] <= low[0] || high[1] <= low[1])) return unset;
   const double region = (high[2] - low[2]) * (round ? M_PI * radius * radius : (high[0] - low[0]) * (high[1] - low[1]));
 
-  auto inside = [&](const Vec3& x) {
-    if (x[2] < low[2] || x[2] > high[2]) return false;
-    if (round) return x[0] * x[0] + x[1] * x[1] <= radius * radius;
-    return x[0] >= low[0] && x[0] <= high[0] && x[1] >= low[1] && x[1] <= high[1];
-  };
+  const BallPoints& points = ball_points();
   double volume = 0;
   for (const auto& b : s.particles.body) {
     const double r = b.radius, x = b.position[0], y = b.position[1], rho = std::sqrt(x * x + y * y);
-    const bool clear =
+    const bool beside =
         round ? rho + r <= radius : x - r >= low[0] && x + r <= high[0] && y - r >= low[1] && y + r <= high[1];
-    if (clear && b.position[2] - r >= low[2] && b.position[2] + r <= high[2]) {
+    const bool between = b.position[2] - r >= low[2] && b.position[2] + r <= high[2];
+    if (beside && between) {
       volume += sphere_volume(r);
       continue;
     }
     if (b.position[2] + r < low[2] || b.position[2] - r > high[2] || (round && rho - r > radius)) continue;
-    int count = 0;
-    for (const auto& p : ball_points()) count += inside(b.position + r * p);
-    volume += sphere_volume(r) * count / double(ball_points().size());
+    Depths depth;
+    depth.fill(infinity);
+    if (!between) lower_to_planes(depth, points.z, b.position[2], r, low[2], high[2]);
+    if (!beside && round) lower_to_cylinder(depth, points, b.position, r, radius);
+    if (!beside && !round)
+      for (int axis : {0, 1})
+        lower_to_planes(depth, axis == 0 ? points.x : points.y, b.position[axis], r, low[axis], high[axis]);
+    const auto inside = std::count_if(depth.begin(), depth.end(), [](double d) { return d >= 0; });
+    volume += sphere_volume(r) * double(inside) / double(BallPoints::count);
   }
   return volume / region;
 }

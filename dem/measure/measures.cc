@@ -57,26 +57,30 @@ Measures measure(const Simulation& sim, const Recording& recording) {
   measure_necks(s, m);
   measure_walls(sim, m);
 
-  double contact_force = 0, damping = 0;
+  double contact_force = 0, damping = 0, power = 0;
   std::size_t touching = 0, forces = 0;
   Mat3 sintering = Mat3::Zero(), total = Mat3::Zero();
+  const ImageShifts shifts(s.cell);
   for (std::size_t k = 0; k < recording.contact.size(); ++k) {
     const ContactRecord& c = recording.contact[k];
     if (!c.touching) continue;
     ++touching;
-    const Vec3 branch = branch_vector(s, k);
+    const Body &a = s.particles.body[s.contacts.i(k)], &b = s.particles.body[s.contacts.j(k)];
+    const Vec3 branch = b.position - a.position + shifts[s.contacts.image(k)];
     const double distance = branch.norm();
     total += c.force * branch.transpose();
-    if (c.sintering != 0) sintering += c.sintering / distance * branch * branch.transpose();
+    if (c.sintering != 0) sintering += Vec3(c.sintering / distance * branch) * branch.transpose();
     const double size = c.force.norm();
     contact_force += size;
-    m.contact_pressure += size * distance / (3 * m.envelope.volume);
+    power += size * distance;
     damping += std::abs(c.damping);
     m.elastic_energy += c.elastic_energy;
-    const double ri = s.particles.body[s.contacts.i(k)].radius, rj = s.particles.body[s.contacts.j(k)].radius;
-    m.largest_overlap = std::max(m.largest_overlap, (ri + rj - distance) / std::min(ri, rj));
+    // A division only where it may be the largest.
+    const double overlap = a.radius + b.radius - distance, smaller = std::min(a.radius, b.radius);
+    if (overlap > m.largest_overlap * smaller) m.largest_overlap = overlap / smaller;
     ++forces;
   }
+  m.contact_pressure = power / (3 * m.envelope.volume);
   for (const auto& w : recording.wall) {
     total += w.force * w.branch.transpose();
     contact_force += w.force.norm();

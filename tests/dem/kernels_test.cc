@@ -1,4 +1,4 @@
-// The contact kernels of every instruction set, the pass that keeps a record, and every number of threads give the same
+// The contact kernels of every instruction set, passes that keep a record, and every number of threads give the same
 // results bit for bit: all do the same IEEE operations in the same order.
 
 #include <gtest/gtest.h>
