@@ -110,11 +110,7 @@ std::vector<Rung> rungs_of_masses(const dem::Scene& scene) {
       {"half the step", {fmt::format("integration.step_safety={:.17g}", own.step_safety / 2)}, "", dem::unset, false});
   for (const double value : {1e-3, 3e-3, 1e-2}) rungs.push_back(named(value, false));
   if (scene.contact.sintering && !scene.contact.friction)
-    rungs.push_back({"without inertia",
-                     {"integration.method=inertia_free", "integration.inertia_free.tangential_share=0.03"},
-                     "",
-                     dem::unset,
-                     false});
+    rungs.push_back({"without inertia", {"integration.method=inertia_free"}, "", dem::unset, false});
   return rungs;
 }
 

@@ -22,7 +22,9 @@ constexpr double breaking_force = 0.1;   // unbalanced over contact force that m
 constexpr double furthest_over_radius = 0.25;  // that a particle may move in one step
 constexpr double furthest_over_skin = 0.25;    // likewise, so that no contact is met that the list does not hold
 constexpr double smallest_force = 1e-300;      // [N], where nothing acts at all
-constexpr double shortest_share = 1e-6;        // of the first trial, before a step counts as impossible
+constexpr double crawling_share = 1e-8;        // of the process, below which steps lead nowhere
+constexpr int most_crawling = 10'000;          // of them in a row
+constexpr double shortest_share = 1e-12;       // of the first trial, before a step counts as impossible
 
 /// A contact at the end of a trial step.
 struct StepContact {
@@ -98,6 +100,12 @@ InertiaFree::Trial InertiaFree::prepare(const State& s, const Setup& setup, cons
     for (std::size_t p = 0; p < s.particles.size(); ++p)
       external_.segment<3>(Eigen::Index(3 * p)) += setup.integration.gravity / s.particles.body[p].inverse_mass;
   if (guided) external_[network_.rows() - 1] = -t.load;
+  const double kept = std::max(1 / setup.integration.mass_scaling, setup.integration.inertia_free.mass_share);
+  const double scaling = kept * setup.integration.mass_scaling;
+  inertia_.resize(network_.rows());
+  for (std::size_t p = 0; p < s.particles.size(); ++p)
+    inertia_.segment<3>(Eigen::Index(3 * p)).setConstant(scaling / (s.particles.body[p].inverse_mass * t.step));
+  if (guided) inertia_[network_.rows() - 1] = kept * s.punch.mass / t.step;
   return t;
 }
 
@@ -133,7 +141,8 @@ void InertiaFree::look_ahead(const State& s, const Trial& t) {
 void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t) {
   look_ahead(s, t);
   network_.clear();
-  resultant_ = external_;
+  network_.resist(inertia_);
+  resultant_ = external_ - inertia_.cwiseProduct(velocity_ - before_);
   double squares = external_.squaredNorm();
   const bool deforming = s.cell.periodic && !s.cell.velocity_gradient.isZero(0);
   const double lateral_share = setup.integration.inertia_free.tangential_share;
@@ -171,6 +180,9 @@ void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t) {
     link.coefficient = coefficient(law, neck, c, rate, force.total, t.young);
     link.lateral = lateral_share * link.coefficient;
     network_.add_force(link, force.total * view.normal + link.lateral * (motion - rate * view.normal), resultant_);
+    // The force turns with the branch: what pulls holds its ends across, as a string does.  What pushes lets them go,
+    // which the matrix leaves out to stay definite.
+    if (!view.at_wall) link.lateral += t.step * std::max(0.0, force.total) / view.branch.norm();
     network_.add(link);
     const double passive = force.total - force.sintering;  // the two may cancel
     squares += passive * passive + force.sintering * force.sintering;
@@ -208,10 +220,10 @@ bool InertiaFree::balance(const State& s, const Setup& setup, const Trial& t) {
   return false;
 }
 
-double InertiaFree::error_estimate(const State& s, const Trial& t, const Vector& before) const {
+double InertiaFree::error_estimate(const State& s, const Trial& t) const {
   double radius = 0, sum = 0;
   for (const double r : s.particles.reference_radius) radius += r / double(s.particles.size());
-  const Vector difference = velocity_ - before;
+  const Vector difference = velocity_ - before_;
   for (const NetworkLink& link : network_.links())
     sum += std::abs(network_.relative(link, difference).dot(link.normal));
   const double count = std::max<double>(1, double(network_.links().size()));
@@ -240,10 +252,10 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, s
   const InertiaFreeSettings& settings = setup.integration.inertia_free;
   network_ = NetworkOperator(s.particles.size(), guided ? std::optional(Vec3(Vec3::UnitZ())) : std::nullopt);
   network_.reserve(s.contacts.size() + s.walls.contacts().size());
-  Vector before(network_.rows());
+  before_.resize(network_.rows());
   for (std::size_t p = 0; p < s.particles.size(); ++p)
-    before.segment<3>(Eigen::Index(3 * p)) = s.particles.body[p].velocity;
-  if (guided) before[network_.rows() - 1] = s.punch.velocity;
+    before_.segment<3>(Eigen::Index(3 * p)) = s.particles.body[p].velocity;
+  if (guided) before_[network_.rows() - 1] = s.punch.velocity;
 
   const bool fixed = !std::isnan(settings.fixed_step);
   const double left = setup.schedule.next_breakpoint(s.time) - s.time;
@@ -260,33 +272,33 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, s
     else if (left < 2 * h)
       h = 0.5 * left;
     const Trial trial = prepare(s, setup, table, guided, h);
-    velocity_ = before;
+    velocity_ = before_;
     // A contact that breaks lets go of its force at once: no shorter step balances it, the next one does.
     const bool solved = balance(s, setup, trial);
     const bool breaks =
         !solved && h < breaking_share * std::min(proposed, left) && resultant_.norm() <= breaking_force * force_scale_;
-    // A particle that next to nothing holds must not be thrown across its neighbours; where a shorter step does not
-    // help, it goes its way in several.
-    bool thrown = false;
-    for (std::size_t p = 0; p < ahead_.size(); ++p) {
-      const double way = h * ahead_.body[p].velocity.norm();
-      const double furthest =
-          std::min(furthest_over_radius * ahead_.body[p].radius, furthest_over_skin * s.contacts.skin);
-      if (way <= furthest) continue;
-      thrown = true;
-      velocity_.segment<3>(Eigen::Index(3 * p)) *= furthest / way;
-    }
-    const bool held_back = thrown && h < breaking_share * std::min(proposed, left);
-    if (held_back) respond(s, setup, trial);
-    const bool balanced = (solved || breaks) && (!thrown || held_back);
-    const double error = balanced ? error_estimate(s, trial, before) / settings.step_tolerance : 0.0;
+    // How much further than it may a particle went: a step long enough to meet what the list does not hold is tried
+    // again.
+    double furthest = 0;
+    for (const Body& b : ahead_.body)
+      furthest =
+          std::max(furthest, h * b.velocity.norm() /
+                                 std::min(furthest_over_radius * b.radius, furthest_over_skin * s.contacts.skin));
+    const bool balanced = (solved || breaks) && furthest <= 1;
+    const double error = balanced ? error_estimate(s, trial) / settings.step_tolerance : 0.0;
     constexpr double margin = 0.8, least = 0.2, most = 2, lessened = 0.9;
     // A contact that snaps open moves at once by what its spring held: no shorter step lessens that.
     const bool snapped = balanced && error > lessened * last_error;
     if (balanced) last_error = error;
-    if (balanced && (fixed || breaks || held_back || error <= 1 || snapped)) {
+    if (balanced && (fixed || breaks || error <= 1 || snapped)) {
       apply(s, trial);
       ++count_.steps;
+      crawling_ = h < crawling_share * setup.schedule.end() && h < left ? crawling_ + 1 : 0;
+      if (crawling_ > most_crawling)
+        throw RunError(
+            "steps without inertia have been shorter than 1e-8 of the process for " + std::to_string(most_crawling) +
+            " steps in a row; something moves that nothing holds, try a "
+            "larger integration.inertia_free.mass_share or tangential_share, or integration.method = \"explicit\"");
       // The error goes as h^2 where the rates change steadily.
       const double factor = error > 0 ? std::clamp(margin / std::sqrt(error), least, most) : most;
       s.stable_step = fixed ? settings.fixed_step : std::max(factor * h, h < step ? std::min(step, most * h) : 0.0);
@@ -297,13 +309,18 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, s
       throw RunError("the forces cannot be balanced without inertia: " + std::to_string(resultant_.norm()) +
                      " N are left of " + std::to_string(force_scale_) +
                      " N; something may be loaded that nothing holds, or use integration.method = \"explicit\"");
-    step = h * (balanced ? std::clamp(margin / std::sqrt(error), least, 0.6) : 0.3);
+    constexpr double most_of_trial = 0.6, unsolved = 0.3;
+    step = h * (balanced       ? std::clamp(margin / std::sqrt(error), least, most_of_trial)
+                : furthest > 1 ? std::clamp(margin / furthest, least * least, most_of_trial)
+                               : unsolved);
   }
 }
 
 std::size_t InertiaFree::bytes() const {
   return network_.links().capacity() * sizeof(NetworkLink) +
-         std::size_t(velocity_.size() + resultant_.size() + change_.size() + external_.size()) * sizeof(double);
+         std::size_t(velocity_.size() + resultant_.size() + change_.size() + external_.size() + before_.size() +
+                     inertia_.size()) *
+             sizeof(double);
 }
 
 }  // namespace densify::dem

@@ -19,10 +19,11 @@ enum class InertiaFreeFrom : std::uint8_t {
 
 struct InertiaFreeSettings {
   InertiaFreeFrom from = InertiaFreeFrom::activation;
-  double tangential_share = 0.01;  ///< f, resistance of a contact across its normal over that along it
-  double step_tolerance = 2e-4;    ///< error of a contact's approach in one step over the mean radius
-  double force_tolerance = 3e-3;   ///< unbalanced over contact force (Euclidean norms) at which a step counts as solved
-  double fixed_step = unset;       ///< replaces the error control [s]
+  double tangential_share = 0.003;  ///< f, resistance of a contact across its normal over that along it
+  double mass_share = 1e-4;         ///< of mass_scaling, at least the real mass, that holds what no contact holds
+  double step_tolerance = 2e-4;     ///< error of a contact's approach in one step over the mean radius
+  double force_tolerance = 3e-3;  ///< unbalanced over contact force (Euclidean norms) at which a step counts as solved
+  double fixed_step = unset;      ///< replaces the error control [s]
 };
 
 /// What it took since the simulation was made.
@@ -39,12 +40,13 @@ class InertiaFree {
   /// particles, walls and cell, and leaves the next proposal in State::stable_step.  The laws' histories follow in the
   /// next force pass.  `guided` is the load-controlled wall.  Returns h [s].
   ///
-  /// Solved are sum_c (F_c n + f c_n v_t) + F_ext = 0 for each particle and sum F = p A for the guided wall, all at the
-  /// end of the step, with F_c(v) what the law's `update` will give; by Newton's method with difference quotients of
-  /// `update` and conjugate gradients.  h keeps (h/2) mean |v - v_before| of the contacts below step_tolerance x
-  /// mean radius, which estimates backward Euler's error; a mean, because a contact that snaps moves at once however
-  /// short the step is.
-  /// Throws RunError when no step balances the forces.
+  /// Solved are sum_c (F_c n + f c_n v_t) + F_ext = M (v - v_before)/h for each particle and sum F - p A likewise for
+  /// the guided wall, all at the end of the step, with F_c(v) what the law's `update` will give; by Newton's method
+  /// with difference quotients of `update` and conjugate gradients.  M is a small share of the scaled mass: nothing in
+  /// steps of ordinary length, it keeps a particle whose necks let go from being thrown as far as one likes in a short
+  /// one.  h keeps (h/2) mean |v - v_before| of the contacts below step_tolerance x mean radius, which estimates
+  /// backward Euler's error; a mean, because a contact that snaps moves at once however short the step is. Throws
+  /// RunError when no step balances the forces.
   double move(State&, const Setup&, const PairTable&, std::optional<std::size_t> guided, double longest);
 
   const InertiaFreeCount& count() const { return count_; }
@@ -57,7 +59,7 @@ class InertiaFree {
   void look_ahead(const State&, const Trial&);
   void respond(const State&, const Setup&, const Trial&);
   bool balance(const State&, const Setup&, const Trial&);
-  double error_estimate(const State&, const Trial&, const Eigen::VectorXd& before) const;
+  double error_estimate(const State&, const Trial&) const;
   void apply(State&, const Trial&) const;
 
   NetworkOperator network_{0, std::nullopt};
@@ -67,8 +69,10 @@ class InertiaFree {
   std::optional<PairTable> table_;  // at the end of the step
   std::vector<double> growth_;      // relative, of each material over the step
   Eigen::VectorXd external_;        // forces from outside at the end of the step [N]
-  Eigen::VectorXd velocity_, resultant_, change_;
+  Eigen::VectorXd inertia_;         // M/h of every row [N s/m]
+  Eigen::VectorXd velocity_, before_, resultant_, change_;
   double force_scale_ = 0;  // norm of all contact forces [N]
+  int crawling_ = 0;        // steps in a row that lead nowhere
   InertiaFreeCount count_;
 };
 

@@ -40,6 +40,8 @@ void read_inertia_free(Section& section, InertiaFreeSettings& s) {
                  Need::optional, "leap-frog until the first necks, or never");
   section.quantity("tangential_share", s.tangential_share, dim::none, share, Need::optional,
                    "f, resistance of a contact across its normal over that along it; results are those of f -> 0");
+  section.quantity("mass_share", s.mass_share, dim::none, share, Need::optional,
+                   "share of mass_scaling that stays, at least the real mass: holds a particle that no contact holds");
   section.quantity("step_tolerance", s.step_tolerance, dim::none, Range::positive(), Need::optional,
                    "error of a contact's approach in one step over the mean radius");
   section.quantity("force_tolerance", s.force_tolerance, dim::none, share, Need::optional,

@@ -47,7 +47,10 @@ void NetworkOperator::add_force(const NetworkLink& l, const Vec3& force, Vector&
 }
 
 void NetworkOperator::apply(const Vector& x, Vector& y) const {
-  y.setZero(rows());
+  if (own_.size() > 0)
+    y = own_.cwiseProduct(x);
+  else
+    y.setZero(rows());
   const double* const in = x.data();
   double* const out = y.data();
   for (const NetworkLink& l : links_) {
@@ -75,6 +78,10 @@ std::vector<Mat3> NetworkOperator::inverse_blocks(double& guide_inverse) const {
     block[l.i] += k;
     if (l.end == End::particle) block[l.j] += k;
     if (l.end == End::guided_wall) guide += guide_->dot(k * *guide_);
+  }
+  if (own_.size() > 0) {
+    for (std::size_t p = 0; p < particles_; ++p) block[p].diagonal() += own_.segment<3>(Eigen::Index(3 * p));
+    if (guide_) guide += own_[rows() - 1];
   }
   for (Mat3& b : block) {
     const double size = b.trace() / 3;
@@ -159,6 +166,7 @@ Eigen::SparseMatrix<double> NetworkOperator::assemble() const {
       entries.emplace_back(last, last, guide_->dot(across));
     }
   }
+  for (Eigen::Index r = 0; r < own_.size(); ++r) entries.emplace_back(r, r, own_[r]);
   Eigen::SparseMatrix<double> matrix(rows(), rows());
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;

@@ -31,15 +31,18 @@ struct SolverReport {
   bool converged = false;
 };
 
-/// K = sum over links of B^T C B, positive semidefinite; one guided wall may add a single unknown, its travel along a
-/// given direction, as the last entry of every vector.  A particle without links has zero rows.
+/// K = sum over links of B^T C B + what resists a row's own motion, positive semidefinite; one guided wall may add a
+/// single unknown, its travel along a given direction, as the last entry of every vector.  A particle without links has
+/// zero rows.
 class NetworkOperator {
  public:
   NetworkOperator(std::size_t particles, std::optional<Vec3> guide) : particles_(particles), guide_(guide) {}
 
-  void clear() { links_.clear(); }
+  void clear() { links_.clear(), own_.resize(0); }
   void reserve(std::size_t links) { links_.reserve(links); }
   void add(const NetworkLink& link) { links_.push_back(link); }
+  /// Resistance of every row against its own motion, as of its inertia over a step; >= 0.
+  void resist(const Eigen::VectorXd& own) { own_ = own; }
   const std::vector<NetworkLink>& links() const { return links_; }
 
   Eigen::Index rows() const { return Eigen::Index(3 * particles_ + (guide_ ? 1 : 0)); }
@@ -67,6 +70,7 @@ class NetworkOperator {
   std::size_t particles_;
   std::optional<Vec3> guide_;  // direction of the guided wall
   std::vector<NetworkLink> links_;
+  Eigen::VectorXd own_;  // of every row, or empty
 };
 
 }  // namespace densify::dem

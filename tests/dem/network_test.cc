@@ -243,6 +243,32 @@ TEST(NetworkOperator, GuidedWallOnAColumn) {
   EXPECT_LT((y - k.assemble() * x).norm(), 1e-13);
 }
 
+// Rows that resist their own motion: a column of one sphere between a fixed wall and the guided one, (k1 + k2 + m) x -
+// k2 y = 0 and (k2 + M) y - k2 x = F; a sphere that nothing else holds moves by b/m.
+TEST(NetworkOperator, OwnResistance) {
+  NetworkOperator k(2, Vec3(Vec3::UnitZ()));
+  const Vec3 up = Vec3::UnitZ();
+  const double k1 = 2, k2 = 4, m = 0.5, guide = 3, force = -3;
+  k.add({-up, k1, 0.5, 0, 0, NetworkLink::End::fixed_wall});
+  k.add({up, k2, 0.5, 0, 0, NetworkLink::End::guided_wall});
+  Eigen::VectorXd own = Eigen::VectorXd::Constant(7, m);
+  own[6] = guide;
+  k.resist(own);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(7), x = b;
+  b[3] = 7, b[6] = force;
+  EXPECT_TRUE(k.solve(b, x, {1e-13, 0}).converged);
+  const double y = force / (k2 + guide - k2 * k2 / (k1 + k2 + m));
+  EXPECT_NEAR(x[6], y, 1e-12);
+  EXPECT_NEAR(x[2], k2 * y / (k1 + k2 + m), 1e-12);
+  EXPECT_NEAR(x[3], 7 / m, 1e-12);
+  Eigen::VectorXd applied;
+  k.apply(x, applied);
+  EXPECT_LT((applied - k.assemble() * x).norm(), 1e-13);
+  k.clear();
+  k.apply(x, applied);
+  EXPECT_EQ(applied.norm(), 0);
+}
+
 // Several right-hand sides are the single ones.
 TEST(NetworkOperator, SeveralRightHandSides) {
   double v;

@@ -131,5 +131,61 @@ TEST(InertiaFree, StepResponseOfAMaxwellCrystal) {
   }
 }
 
+// A particle that nothing holds gains F h/M a step, M = max(1, mass_share x mass_scaling) times its real mass: it is
+// not thrown as far as one likes.
+TEST(InertiaFree, NothingHoldsALooseParticle) {
+  for (const double scaling : {1.0, 1e8}) {
+    auto s =
+        empty_setup(copper(), elastic_model(dem::Elasticity::linear, 1e5), Schedule(300, 0, {{"hold", 1, 300, 0}}));
+    drop_inertia(s);
+    s.integration.mass_scaling = scaling;
+    s.integration.inertia_free.mass_share = 1e-3;
+    add_sphere(s.particles, Vec3::Zero(), radius, Vec3::Zero());
+    const double mass = std::max(1.0, 1e-3 * scaling) * s.materials[0].density * 4 * M_PI / 3 * std::pow(radius, 3);
+    const double h = 1e-3, force = 1e-4 * mass * radius / (h * h);
+    s.integration.inertia_free.fixed_step = h;
+    s.loads = {{0, Vec3(0, 0, force), 0}};
+    Simulation sim(s);
+    double way = 0;
+    for (int n = 1; n <= 5; ++n) {
+      sim.advance(nullptr);
+      way += n * h * h * force / mass;
+      EXPECT_NEAR(body(sim, 0).velocity[2] / (n * h * force / mass), 1, 1e-12);
+      EXPECT_NEAR(body(sim, 0).position[2] / way, 1, 1e-12);
+    }
+  }
+}
+
+// Three bonded spheres in a row pulled by T at their ends, the middle one by q across: the force turns with the branch,
+// F cos(t) = T and 2 F sin(t) = q, so that tan(t) = q/(2 T) and every branch is L + F/k long.  What holds the middle
+// sphere is T/L, fifty times f k: a Newton matrix without it never comes to rest in steps of any length.
+TEST(InertiaFree, StringUnderTension) {
+  const double k = 1e5, tension = 0.3 * k * radius, across = 0.2 * tension, gap = 1.999 * radius;
+  auto contact = elastic_model(dem::Elasticity::linear, k);
+  contact.sintering = dem::SinteringSettings{};
+  contact.sintering->relaxation_time = 0;
+  auto s = empty_setup(copper(), contact, Schedule(1300, 0, {{"pull", 1500, 1300, 0}}));
+  drop_inertia(s);
+  s.integration.inertia_free.fixed_step = 10;
+  s.integration.inertia_free.force_tolerance = 1e-8;
+  s.integration.inertia_free.tangential_share = 0.003;
+  for (int i = 0; i < 3; ++i) add_sphere(s.particles, Vec3(0, 0, (i - 1) * gap), radius, Vec3::Zero());
+  // The string is tight before it turns; elongations are summed along the normals at the ends of 100 steps.
+  for (const double end : {-1.0, 1.0}) {
+    const std::uint32_t p = end < 0 ? 0 : 2;
+    s.loads.push_back({p, Vec3(0, 0, end * tension), 100});
+    s.loads.push_back({p, Vec3(-across / 2, 0, 0), 1000});
+  }
+  s.loads.push_back({1, Vec3(across, 0, 0), 1000});
+  Simulation sim(s);
+  sim.evaluate(nullptr);
+  bond_all(sim, dem::NeckPhase::bonded, 0.5);
+  while (!sim.finished()) sim.advance(nullptr);
+  const Vec3 branch = body(sim, 1).position - body(sim, 0).position;
+  EXPECT_NEAR(branch[0] / branch[2] / (across / (2 * tension)), 1, 1e-6);
+  EXPECT_NEAR((branch.norm() - gap) / (std::hypot(tension, across / 2) / k), 1, 1e-3);
+  EXPECT_EQ(sim.inertia_free_count().rejected, 0u);
+}
+
 }  // namespace
 }  // namespace densify::test
