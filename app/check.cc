@@ -35,6 +35,9 @@ int check(const dem::Scene& scene, const CheckCommand& command) {
   const dem::Forecast ahead = dem::forecast(scene, powder, at_start);
   fmt::print("process time                    {:.6g} s in {} stages, peak temperature {:.1f} K\n", scene.schedule.end(),
              scene.schedule.stages().size(), scene.schedule.peak_temperature());
+  if (scene.cell_path)
+    fmt::print("periodic cell                   driven by {}, largest stress {:.4g} Pa\n",
+               scene.cell_path->by_stress() ? "stress and rate" : "rate", scene.cell_path->peak_stress());
   if (scene.integration.inertia == dem::Inertia::uniform)
     fmt::print("smallest critical step          about {:.2g} s\n", ahead.smallest_limit);
   fmt::print("steps                           about {:.2g} of {:.2g} s on average\n", ahead.steps,

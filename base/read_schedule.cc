@@ -60,7 +60,7 @@ double duration_of(const Section& section, const StageKeys& keys, double start, 
 
 }  // namespace
 
-Schedule read_schedule(Section& process) {
+Schedule read_schedule(Section& process, const std::function<void(Section&, double, double)>& also) {
   double start_temperature = 293.15;
   double start_pressure = 0.0;
   process.quantity("start_temperature", start_temperature, dim::temperature, Range::non_negative(), Need::optional,
@@ -73,6 +73,7 @@ Schedule read_schedule(Section& process) {
   double pressure = start_pressure;
   process.list("stage", Need::required, "stages of the process in order", [&](Section& section, std::size_t) {
     const StageKeys keys = read_keys(section);
+    if (also) also(section, pressure, keys.pressure);
     if (section.documenting()) return;
     const double end_temperature = std::isnan(keys.temperature) ? temperature : keys.temperature;
     const double duration = duration_of(section, keys, time, end_temperature - temperature);

@@ -1,6 +1,7 @@
 #pragma once
 // The process: temperature and pressure over time, linear through stages (thesis Figs 5.1 and 5.2).
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,9 @@ class Schedule {
 
 /// Reads start_temperature, start_pressure and the [[stage]] list of a process section.  Throws InputError at the key
 /// that goes back in time, leaves the duration open or gives it twice.  A visit for help returns a stand-in.
-Schedule read_schedule(Section& process);
+/// `also` visits each stage after its own keys, for who has more to say of it, with the pressure that the stage begins
+/// with and the one that it gives itself, NaN if none [Pa].
+Schedule read_schedule(Section& process,
+                       const std::function<void(Section& stage, double before, double given)>& also = {});
 
 }  // namespace densify

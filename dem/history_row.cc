@@ -1,5 +1,8 @@
 #include "dem/history_row.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace densify::dem {
 
 namespace {
@@ -12,10 +15,43 @@ void add_tensor(std::vector<double>& row, const Mat3& t) {
   for (auto [i, j] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}) row.push_back(t(i, j));
 }
 
+/// The highest pressure, or stress that drives the cell, of the process [Pa].
+double peak_load(const Simulation& sim) {
+  return sim.stress_driven() ? sim.setup().cell_path->peak_stress() : sim.setup().schedule.peak_pressure();
+}
+
+void add_cell_columns(std::vector<HistoryColumn>& columns, bool by_stress) {
+  const auto add = [&](const std::string& before, const std::string& after, const std::string& unit) {
+    for (const char* ij : tensor_names) columns.push_back({before + ij + after, unit});
+  };
+  add("strain_", "", "1");
+  add("strain_rate_", "_per_s", "1/s");
+  if (!by_stress) return;
+  add("stress_goal_", "_Pa", "Pa");
+  add("stress_mean_", "_Pa", "Pa");
+}
+
+void add_cell(std::vector<double>& row, const Simulation& sim, HistoryMemory& memory) {
+  const State& s = sim.state();
+  const Mat3& f = s.cell_drive.deformation;
+  for (const auto& [i, j] : tensor_places) row.push_back(i == j ? std::log(f(i, i)) : f(i, j) / f(j, j));
+  for (const auto& [i, j] : tensor_places) row.push_back(s.cell.velocity_gradient(i, j));
+  if (!sim.stress_driven()) return;
+  for (std::size_t c = 0; c < 6; ++c) {
+    const CellGoal goal = sim.cell_goal(c);
+    row.push_back(goal.control == CellControl::stress ? goal.value : unset);
+  }
+  for (std::size_t c = 0; c < 6; ++c)
+    row.push_back(memory.cell_time > 0 ? memory.cell_impulse[c] / memory.cell_time
+                                       : sim.cell_stress()(tensor_places[c][0], tensor_places[c][1]));
+  memory.cell_impulse.fill(0);
+  memory.cell_time = 0;
+}
+
 /// Inertial number between two rows: D from the density, which knows nothing of thermal growth.
 double inertial_number(const Simulation& sim, const Measures& m, const HistoryMemory& memory) {
   const State& s = sim.state();
-  const double pressure = std::max(m.contact_pressure, 0.01 * sim.setup().schedule.peak_pressure());
+  const double pressure = std::max(m.contact_pressure, 0.01 * peak_load(sim));
   const double rate = std::abs(m.relative_density / memory.density - 1) / (s.time - memory.time);
   double mass = 0;
   for (const Body& b : s.particles.body) mass += 1 / b.inverse_mass;
@@ -25,7 +61,7 @@ double inertial_number(const Simulation& sim, const Measures& m, const HistoryMe
 /// The estimate of the density's error, moved on to this row.
 double error_at_row(const Simulation& sim, const Measures& m, HistoryMemory& memory) {
   const State& s = sim.state();
-  if (s.cell.periodic) return 0;  // the density is imposed
+  if (s.cell.periodic && !sim.stress_driven()) return 0;  // the density is imposed
   ErrorEstimate& e = memory.error;
   if (std::isnan(e.initial)) e.initial = m.relative_density;
   if (s.time > memory.time) {
@@ -36,16 +72,18 @@ double error_at_row(const Simulation& sim, const Measures& m, HistoryMemory& mem
                   (s.contacts.neck.empty() ? ErrorEstimate::loose_share : ErrorEstimate::sintering_share);
     e.advance(memory.density, m.relative_density, share);
   }
-  const double peak = sim.setup().schedule.peak_pressure();
-  const double relieved = peak > 0 && !s.contacts.neck.empty() ? 1 - sim.pressure() / peak : 0.0;
+  const double peak = peak_load(sim);
+  const double relieved = peak > 0 && !s.contacts.neck.empty() ? 1 - sim.load().size / peak : 0.0;
   return e.error(m.relative_density, relieved, s.particles.size());
 }
 
 }  // namespace
 
 std::vector<double> HistoryMemory::numbers() const {
-  return {initial.size[0], initial.size[1], initial.size[2], initial.volume, density, time,
-          punch_impulse,   punch_time,      error.bias,      error.initial};
+  std::vector<double> n{initial.size[0], initial.size[1], initial.size[2], initial.volume, density,  time,
+                        punch_impulse,   punch_time,      error.bias,      error.initial,  cell_time};
+  n.insert(n.end(), cell_impulse.begin(), cell_impulse.end());
+  return n;
 }
 
 HistoryMemory HistoryMemory::from(std::span<const double> n) {
@@ -56,6 +94,8 @@ HistoryMemory HistoryMemory::from(std::span<const double> n) {
   m.punch_impulse = n[6];
   m.punch_time = n[7];
   m.error = {n[8], n[9]};
+  m.cell_time = n[10];
+  std::copy_n(n.begin() + 11, 6, m.cell_impulse.begin());
   return m;
 }
 
@@ -87,6 +127,7 @@ std::vector<HistoryColumn> history_columns(const Setup& setup) {
                        {"punch_pressure_mean_Pa", "Pa"},
                        {"bottom_pressure_Pa", "Pa"},
                        {"lateral_pressure_Pa", "Pa"}});
+  if (setup.cell_path) add_cell_columns(c, setup.cell_path->by_stress());
   if (setup.integration.inertia == Inertia::equalised) c.push_back({"inertial_number", "1"});
   c.insert(c.end(), {{"unbalanced_force_ratio", "1"},
                      {"kinetic_over_elastic_energy", "1"},
@@ -125,6 +166,7 @@ std::vector<double> history_row(const Simulation& sim, const Measures& m, Histor
     const double mean = memory.punch_time > 0 ? memory.punch_impulse / memory.punch_time / area : m.punch_pressure;
     row.insert(row.end(), {m.punch_pressure, mean, m.bottom_pressure, m.lateral_pressure});
   }
+  if (setup.cell_path) add_cell(row, sim, memory);
   if (setup.integration.inertia == Inertia::equalised) row.push_back(s.control.inertial_number);
   row.insert(row.end(), {m.unbalanced_force_ratio, m.elastic_energy > 0 ? m.kinetic_energy / m.elastic_energy : unset,
                          m.damping_share, m.largest_overlap, s.last_step, double(s.steps)});

@@ -9,17 +9,19 @@ namespace densify::dem {
 
 /// What rows need to remember from row to row; travels with the checkpoint.
 struct HistoryMemory {
-  Envelope initial;          ///< shrinkage counts from here (5.4)
-  double density = unset;    ///< of the row before
-  double time = 0;           ///< of the row before [s]
-  double punch_impulse = 0;  ///< integral of the punch force since the row before [N s]
-  double punch_time = 0;     ///< [s]
+  Envelope initial;                      ///< shrinkage counts from here (5.4)
+  double density = unset;                ///< of the row before
+  double time = 0;                       ///< of the row before [s]
+  double punch_impulse = 0;              ///< integral of the punch force since the row before [N s]
+  double punch_time = 0;                 ///< [s]
+  std::array<double, 6> cell_impulse{};  ///< integral of the driven cell's stress since the row before [Pa s]
+  double cell_time = 0;                  ///< [s]
   ErrorEstimate error;
   double density_error = 0;  ///< estimated, of this row's density
 
   std::vector<double> numbers() const;
   static HistoryMemory from(std::span<const double> numbers);
-  static constexpr std::size_t size = 10;
+  static constexpr std::size_t size = 17;
 };
 
 /// Names with units.

@@ -321,6 +321,11 @@ void Run::loop() {
       memory_.punch_impulse += sim_->state().walls.normal_force()[*punch] * state.last_step;
       memory_.punch_time += state.last_step;
     }
+    if (sim_->stress_driven()) {
+      for (std::size_t c = 0; c < 6; ++c)
+        memory_.cell_impulse[c] += sim_->cell_stress()(tensor_places[c][0], tensor_places[c][1]) * state.last_step;
+      memory_.cell_time += state.last_step;
+    }
     if (row) record(recording, breakpoint);
     if (last) break;
     const Stopwatch motion;

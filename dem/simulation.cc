@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "dem/integrate/leapfrog.h"
 #include "dem/state/spatial_order.h"
 
 namespace densify::dem {
@@ -58,6 +57,9 @@ Simulation::Simulation(Setup setup)
   if (setup_.integration.method == IntegrationMethod::inertia_free && setup_.contact.friction)
     throw InputError(
         "integration.method: \"inertia_free\" has no rotations, which [contact.friction] needs; remove one");
+  if (setup_.integration.method == IntegrationMethod::inertia_free && setup_.cell_path)
+    throw InputError(
+        "integration.method: \"inertia_free\" cannot move a cell that the process drives; use method = \"explicit\"");
   Particles& particles = setup_.particles;
   const auto order = spatial_order(particles);
   permute(particles.body, order);
@@ -92,6 +94,7 @@ Simulation::Simulation(Setup setup)
   state_.particles = std::move(setup_.particles);
   setup_.particles = Particles{};
   state_.cell = setup_.cell;
+  if (stress_driven()) pass_.keep_virial();
   state_.contacts.skin = setup_.integration.skin * mean_radius;
   state_.expansion.assign(setup_.materials.size(), 1.0);
   expansion_step_.assign(setup_.materials.size(), 0.0);
@@ -104,6 +107,7 @@ Simulation::Simulation(Setup setup)
   }
   if (equalised()) {
     control_ = step_control(setup_.integration, setup_.schedule);
+    if (stress_driven()) control_.peak_pressure = setup_.cell_path->peak_stress();
     if (const auto& sintering = setup_.contact.sintering) {
       control_.transition = sintering->relaxation_time;
       for (std::uint8_t a = 0; a < table_.materials(); ++a)
@@ -202,7 +206,9 @@ void Simulation::rebuild_lists() {
                            setup_.contact.sintering && (table_.any_active() || !state_.contacts.neck.empty())};
   try {
     pass_.near().clear();  // room for the search
-    rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs, setup_.integration.threads);
+    const Eigen::Matrix3i change = state_.cell.periodic ? state_.cell.reduce() : Eigen::Matrix3i::Identity().eval();
+    rebuild(state_.contacts, state_.particles, state_.cell, state_.expansion, needs, setup_.integration.threads,
+            change);
   } catch (const InputError& error) {  // a cell that has become too narrow is no mistake of the input any more
     if (state_.steps == 0) throw;
     throw RunError(error.what());
@@ -258,6 +264,11 @@ void Simulation::compute_forces(Recording* record) {
   StepStiffness* const stiffness = equalised() ? &stiffness_ : nullptr;
   pass_.compute(state_.particles, state_.contacts, state_.cell, table_, expansion_step_, clock,
                 record ? &record->contact : nullptr, stiffness);
+  if (stress_driven()) {
+    const Mat3 virial = pass_.virial(state_.particles, state_.cell);
+    cell_stress_ = 0.5 / state_.cell.volume() * (virial + virial.transpose());
+  }
+  if (setup_.cell_path) enter_stage(state_.cell_drive, *setup_.cell_path, setup_.schedule, state_.time, cell_stress_);
   if (!state_.walls.wall.empty())
     state_.walls.compute(state_.particles, table_, setup_.contact, expansion_step_, clock,
                          record ? &record->wall : nullptr, stiffness);
@@ -326,6 +337,7 @@ double Simulation::leapfrog_step() {
     state_.punch.kick(force, pressure(), kick_step);
     state_.walls.wall[*punch_wall_].velocity = Vec3(0, 0, state_.punch.velocity);
   }
+  if (setup_.cell_path) drive_cell({kick_step, step});
   const double fastest =
       leapfrog(state_.particles, state_.cell, {kick_step, step}, setup_.integration.drag, setup_.integration.threads);
   note_travel(fastest, step);

@@ -6,10 +6,12 @@
 #include <optional>
 
 #include "base/schedule.h"
+#include "dem/boundary/cell_drive.h"
 #include "dem/boundary/punch.h"
 #include "dem/integrate/guards.h"
 #include "dem/integrate/inertia.h"
 #include "dem/integrate/inertia_free.h"
+#include "dem/integrate/leapfrog.h"
 #include "dem/integrate/step_control.h"
 #include "dem/integrate/time_step.h"
 
@@ -64,9 +66,10 @@ struct Setup {
   IntegrationSettings integration;
   Schedule schedule;
   std::vector<Load> loads;
-  double reference_temperature = 293.15;  ///< at which radii and densities are given [K]
-  Particles particles;                    ///< reference_radius, material, id, body.position set
-  Cell cell;                              ///< periodic only
+  double reference_temperature = 293.15;   ///< at which radii and densities are given [K]
+  Particles particles;                     ///< reference_radius, material, id, body.position set
+  Cell cell;                               ///< periodic only
+  std::optional<CellPath> cell_path = {};  ///< periodic only: what drives the cell through the stages of the schedule
 };
 
 /// All that changes; written to a checkpoint bit for bit.
@@ -86,6 +89,7 @@ struct State {
   bool inertia_free = false;         ///< moves without inertia by now, masses are real
   std::vector<double> active_since;  ///< of each pair of materials [s]
   ControlState control;              ///< equalised inertia only
+  CellDrive cell_drive;              ///< a cell with a path only
 };
 
 /// What a measure reads after a recorded pass.
@@ -150,6 +154,14 @@ class Simulation {
 
   double temperature() const { return setup_.schedule.temperature(state_.time); }
   double pressure() const { return setup_.schedule.pressure(state_.time); }
+  /// True for a periodic cell of which a stress drives a component, at some time of the process.
+  bool stress_driven() const { return setup_.cell_path && setup_.cell_path->by_stress(); }
+  /// Of the contacts in the last evaluation, symmetrised, tension positive; only of a stress-driven cell [Pa].
+  const Mat3& cell_stress() const { return cell_stress_; }
+  /// The load of the process now.
+  ProcessLoad load() const;
+  /// What drives a component of the cell now, in the order of tensor_places.
+  CellGoal cell_goal(std::size_t component) const;
   double real_mass(std::size_t p) const;  ///< [kg]
   /// Solid volume of the powder at the reference temperature [m^3].
   double solid_volume() const;
@@ -175,6 +187,10 @@ class Simulation {
   void equalise_inertia();
   void equalise_punch();
   Column column() const;
+  void weigh_cell(CellStiffness, double step);
+  CellStiffness equalised_cell_stiffness() const;
+  double cell_leap() const;
+  void drive_cell(LeapfrogSteps);
   void rebuild_lists();
   void prune_near(double list_age);
   void set_list_slack(double list_age);
@@ -197,6 +213,7 @@ class Simulation {
   double may_have_travelled_ = 0, list_slack_ = 0;
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
+  Mat3 cell_stress_ = Mat3::Zero();
 };
 
 }  // namespace densify::dem

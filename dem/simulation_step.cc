@@ -43,8 +43,11 @@ void choose_settings(IntegrationSettings& s, double accuracy) {
 StepLimit Simulation::step_limit() {
   const PunchNode punch{state_.punch.mass, state_.punch.damping, punch_wall_.value_or(0)};
   const auto limit = [&](const PassPairs& pairs) {
-    return critical_step(state_.particles, state_.contacts, pairs, state_.cell, table_, setup_.contact, state_.walls,
-                         punch, {state_.time, state_.last_step}, setup_.integration.rule, setup_.integration.threads);
+    StepLimit l =
+        critical_step(state_.particles, state_.contacts, pairs, state_.cell, table_, setup_.contact, state_.walls,
+                      punch, {state_.time, state_.last_step}, setup_.integration.rule, setup_.integration.threads);
+    if (stress_driven()) l.critical /= 1 + carriage_share;  // room for the cell's own motion
+    return l;
   };
   if (!pass_.near().empty() && may_have_travelled_ < pass_.near().skin()) return limit({pass_.near(), pass_.chunks()});
   NearList all;
@@ -91,9 +94,11 @@ double Simulation::choose_step() {
     state_.stable_step = settings.step_safety * limit.critical;
     if (!std::isnan(settings.fixed_step)) state_.stable_step = settings.fixed_step;
     if (!std::isnan(settings.largest_step)) state_.stable_step = std::min(state_.stable_step, settings.largest_step);
+    if (stress_driven()) weigh_cell(limit.cell, state_.stable_step);
     if (state_.punch.mass > 0) state_.punch.tune(limit.punch_stiffness, setup_.container.punch_settings.damping_ratio);
   }
   double step = state_.stable_step;
+  if (stress_driven() && std::isnan(settings.fixed_step)) step = std::min(step, cell_leap());
   if (state_.punch.mass > 0 && std::isnan(settings.fixed_step)) {
     // A jump of the pressure must not throw the punch into the powder between two looks at its contacts.
     constexpr double leap = 0.01;  // of the mean radius, from rest in a step
@@ -116,7 +121,7 @@ void Simulation::plan_equalised_step() {
     equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety, 0, settings.threads);
   }
   if (std::isnan(settings.fixed_step))
-    state_.stable_step = std::min(state_.stable_step, schedule_limit(control_, setup_.schedule, state_.time,
+    state_.stable_step = std::min(state_.stable_step, schedule_limit(control_, setup_.schedule, load(), state_.time,
                                                                      state_.stable_step, state_.contacts.neck.empty()));
   state_.critical_step = state_.stable_step / settings.step_safety;
   // Breakpoints of the schedule are met exactly: the last steps before one share the way.
@@ -136,9 +141,10 @@ void Simulation::equalise_inertia() {
   if (state_.last_step > 0 && stiffness_.next_step > state_.last_step * (1 + 1e-9))
     calm(state_.particles, state_.last_step / stiffness_.next_step);
   const bool pressed = state_.punch.mass > 0;
-  equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety, pressed ? carriage_share : 0.0,
-           settings.threads);
+  equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety,
+           pressed || stress_driven() ? carriage_share : 0.0, settings.threads);
   if (pressed) equalise_punch();
+  if (stress_driven()) weigh_cell(equalised_cell_stiffness(), stiffness_.next_step);
   if (state_.steps % control_interval != 0) return;
   const double pressure = std::max(contact_pressure(state_.particles, stiffness_), control_.pressure_floor());
   double growth = 0;  // mean over the materials

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem/boundary/tracking_mean.h"
+
 namespace densify::dem {
 
 struct PunchSettings {
@@ -37,12 +39,7 @@ struct Punch {
     const double damper = powder_force != 0 ? damping * (velocity - mean_velocity) : 0.0;
     velocity += (powder_force - pressure * area - damper) / mass * step;
     if (memory <= 0) return;
-    // Implicit in the filter, so that it is stable for any step: e = v - v_mean, v_mean' = a_mean + 2 e/T, a_mean' =
-    // e/T^2.
-    const double x = step / memory;
-    const double e = (velocity - mean_velocity - step * mean_acceleration) / (1 + 2 * x + x * x);
-    mean_acceleration += x * e / memory;
-    mean_velocity += step * mean_acceleration + 2 * x * e;
+    follow(velocity, memory, step, mean_velocity, mean_acceleration);
   }
 };
 

@@ -15,8 +15,9 @@ class Chunks {
     std::size_t begin, end;
   };
 
-  /// Divides the particles and sorts the near pairs to their chunks.
-  void build(const ContactList&, const NearList&, std::size_t particles, int threads);
+  /// Divides the particles and sorts the near pairs to their chunks.  With `images_apart` what crosses a face of the
+  /// cell has sums of its own, one for each particle and image, so that a pass knows the forces through the faces.
+  void build(const ContactList&, const NearList&, std::size_t particles, int threads, bool images_apart = false);
 
   std::size_t count() const { return near_begin_.empty() ? 0 : others_begin_.size() - 1; }
   /// First particle of a chunk, which holds whole groups of the contact list.
@@ -37,6 +38,8 @@ class Chunks {
 
   /// The sums for others of all chunks, one after another: of which particle, and where a chunk's begin.
   const std::vector<std::uint32_t>& others() const { return others_; }
+  /// The image codes of these particles; empty unless images are apart.
+  const std::vector<std::uint8_t>& other_images() const { return other_images_; }
   std::size_t others_begin(std::size_t chunk) const { return others_begin_[chunk]; }
   /// What the other chunks have for a chunk, in their order.
   const std::vector<Incoming>& incoming(std::size_t chunk) const { return incoming_[chunk]; }
@@ -48,6 +51,7 @@ class Chunks {
   std::vector<std::size_t> near_begin_;
   std::vector<std::uint16_t> offsets_i_;
   std::vector<std::uint32_t> offsets_j_, others_;
+  std::vector<std::uint8_t> other_images_;
   std::vector<std::size_t> others_begin_;
   std::vector<std::vector<Incoming>> incoming_;
 };

@@ -68,7 +68,8 @@ std::vector<Eigen::Vector3i> wrap_into_cell(Particles& particles, const Cell& ce
 }
 
 /// Under the keys that pairs with a history will have in the new list.
-Histories histories(const ContactList& list, const std::vector<Eigen::Vector3i>& moved, const Particles& particles) {
+Histories histories(const ContactList& list, const std::vector<Eigen::Vector3i>& moved, const Eigen::Matrix3i& change,
+                    const Particles& particles) {
   std::vector<Kept> found;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const bool necked = !list.neck.empty() && list.neck[k].phase != NeckPhase::loose;
@@ -76,7 +77,7 @@ Histories histories(const ContactList& list, const std::vector<Eigen::Vector3i>&
     if (!necked && !sheared) continue;
     std::uint8_t image = list.image(k);
     if (!moved.empty()) {
-      const Eigen::Vector3i n = ImageCode::unpack(image) + moved[list.j(k)] - moved[list.i(k)];
+      const Eigen::Vector3i n = change * ImageCode::unpack(image) + moved[list.j(k)] - moved[list.i(k)];
       if (n.cwiseAbs().maxCoeff() > 1)
         throw RunError("a contact spans more than one period of the cell (particles " +
                        std::to_string(particles.id[list.i(k)]) + " and " + std::to_string(particles.id[list.j(k)]) +
@@ -101,11 +102,11 @@ Histories histories(const ContactList& list, const std::vector<Eigen::Vector3i>&
 }  // namespace
 
 void rebuild(ContactList& list, Particles& particles, const Cell& cell, const std::vector<double>& expansion,
-             HistoryNeeds needs, int threads) {
+             HistoryNeeds needs, int threads, const Eigen::Matrix3i& change) {
   if (particles.size() > ContactList::index_mask)
     throw InputError("powder: more than " + std::to_string(ContactList::index_mask) + " particles are not supported");
   const auto moved = cell.periodic ? wrap_into_cell(particles, cell) : std::vector<Eigen::Vector3i>{};
-  const Histories old_histories = histories(list, moved, particles);
+  const Histories old_histories = histories(list, moved, change, particles);
   // From here on the old histories alone are needed; the other arrays are filled anew where they are.
   const auto old_tangential = std::move(list.tangential);
   const auto old_neck = std::move(list.neck);

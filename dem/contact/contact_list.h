@@ -48,8 +48,10 @@ struct HistoryNeeds {
 };
 
 /// Builds the list anew: wraps the particles into the cell, finds all pairs within reach and carries over histories; a
-/// pair that has a neck stays in the list at any distance.
-void rebuild(ContactList&, Particles&, const Cell&, const std::vector<double>& expansion, HistoryNeeds, int threads);
+/// pair that has a neck stays in the list at any distance.  `change` is that of Cell::reduce where the cell has got
+/// other edges since the last build.
+void rebuild(ContactList&, Particles&, const Cell&, const std::vector<double>& expansion, HistoryNeeds, int threads,
+             const Eigen::Matrix3i& change = Eigen::Matrix3i::Identity());
 
 /// Positions, cell and thermal stretches of an earlier moment, and the largest radius and skin of a list made then.
 struct ListMoment {

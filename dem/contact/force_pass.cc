@@ -17,7 +17,7 @@ void ForcePass::list_changed(const ContactList&, std::size_t) {
 }
 
 void ForcePass::near_changed(const ContactList& list, std::size_t particles) {
-  chunks_.build(list, near_, particles, threads_);
+  chunks_.build(list, near_, particles, threads_, images_apart_);
 }
 
 void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cell, const PairTable& table,
@@ -156,6 +156,22 @@ void ForcePass::compute(Particles& particles, ContactList& list, const Cell& cel
   in_parts(chunks_.count(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) add_incoming(c, particles, stiffness);
   });
+}
+
+Mat3 ForcePass::virial(const Particles& particles, const Cell& cell) const {
+  // Each sum serially and in one order, so that it does not depend on the number of threads.
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t p = 0; p < particles.size(); ++p)
+    sum -= particles.force[p] * (particles.body[p].position - cell.origin).transpose();
+  const std::size_t others = chunks_.others().size();
+  if (others == 0) return sum;
+  std::array<Vec3, 27> through;
+  through.fill(Vec3::Zero());
+  const std::size_t kept = for_others_.size() / others;
+  for (std::size_t k = 0; k < others; ++k)
+    through[chunks_.other_images()[k]] += Eigen::Map<const Vec3>(for_others_.data() + kept * k);
+  for (std::uint8_t code = 0; code < 27; ++code) sum -= through[code] * cell.shift(code).transpose();
+  return sum;
 }
 
 std::size_t ForcePass::bytes() const {

@@ -42,6 +42,12 @@ class ForcePass {
   void compute(Particles&, ContactList&, const Cell&, const PairTable&, const std::vector<double>& expansion_step,
                PassTime, std::vector<ContactRecord>* record, StepStiffness* stiffness);
 
+  /// From the next rebuild on virial() is there.
+  void keep_virial() { images_apart_ = true; }
+  /// sum F (x) b over the contacts, F on i, b from i to j: by the resultants and by the forces through the faces of the
+  /// cell.  Right after compute(), before other forces are added. [N m]
+  Mat3 virial(const Particles&, const Cell&) const;
+
   /// To be called after every rebuild of the list; the next passes visit all its pairs until near() is pruned.
   void list_changed(const ContactList&, std::size_t particles);
 
@@ -72,6 +78,7 @@ class ForcePass {
 
   ContactModel model_;
   int threads_;
+  bool images_apart_ = false;
   const KernelTable* kernels_;
   NearList near_;
   Chunks chunks_;

@@ -22,6 +22,10 @@ struct SymmetricSum {
     yz += m[1] * n[2];
   }
 
+  void add(const SymmetricSum& o, double factor) {
+    xx += factor * o.xx, yy += factor * o.yy, zz += factor * o.zz;
+    xy += factor * o.xy, xz += factor * o.xz, yz += factor * o.yz;
+  }
   void operator+=(const SymmetricSum& o) { xx += o.xx, yy += o.yy, zz += o.zz, xy += o.xy, xz += o.xz, yz += o.yz; }
 
   /// Upper bound of the largest eigenvalue from trace and Frobenius norm, mean + sqrt(2) x standard deviation of the

@@ -77,13 +77,13 @@ double controlled_step(const StepControl& control, const ControlState& state, do
   return std::clamp(step * std::clamp(wanted, least, most), control.smallest_step, control.largest_step);
 }
 
-double schedule_limit(const StepControl& control, const Schedule& schedule, double time, double step, bool loose) {
+double schedule_limit(const StepControl& control, const Schedule& schedule, ProcessLoad load, double time, double step,
+                      bool loose) {
   constexpr double transition_steps = 60, share_of_pressure = 0.05, least_pressure = 0.002;
   double limit = control.largest_step;
-  const double rate = std::abs(schedule.pressure_rate(time));
+  const double rate = load.rate;
   if (rate > 0) {
-    limit = std::min(
-        limit, share_of_pressure * std::max(schedule.pressure(time), least_pressure * control.peak_pressure) / rate);
+    limit = std::min(limit, share_of_pressure * std::max(load.size, least_pressure * control.peak_pressure) / rate);
     if (loose) limit = std::min(limit, control.peak_pressure / (control.load_steps * rate));
   }
   const double before = schedule.temperature(std::max(0.0, time - control.transition)),

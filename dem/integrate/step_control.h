@@ -60,10 +60,15 @@ void measure_inertia(ControlState&, const Particles&, const Cell&, double pressu
 /// control_interval is limited so that steps follow each other smoothly.
 double controlled_step(const StepControl&, const ControlState&, double step);
 
+/// The load of a process at a time: the pressure on the punch, or the largest stress that drives the cell.
+struct ProcessLoad {
+  double size, rate;  ///< [Pa], [Pa/s]
+};
+
 /// The longest step from a time on that does justice to the schedule [s].  What is loose rearranges by jumps, as many
 /// for each share of the load whatever the rate: load_steps for the peak pressure.  In any state the pressure changes
 /// by at most a twentieth of itself (down to 0.002 of its peak), and a transition of the contacts (4.47-4.54) takes
 /// some sixty steps.
-double schedule_limit(const StepControl&, const Schedule&, double time, double step, bool loose);
+double schedule_limit(const StepControl&, const Schedule&, ProcessLoad, double time, double step, bool loose);
 
 }  // namespace densify::dem

@@ -150,9 +150,26 @@ StepLimit smallest_limit(const Particles& particles, const PairTable& table, con
     constexpr double rounding = 1e-12;  // the limit of most particles is clearly above: no root, no division
     if ((k * limit.critical + 2 * c) * limit.critical < 2 * mass * (1 - rounding)) continue;
     const double own = node_limit(mass, k, c);
-    if (own < limit.critical) limit = {own, std::uint32_t(p), 0};
+    if (own < limit.critical) limit = {own, std::uint32_t(p), 0, {}};
   }
   return limit;
+}
+
+/// In one order for every number of threads.
+CellStiffness cell_stiffness(const Particles& particles, const PairTable& table, const ContactModel& model,
+                             const std::vector<NodeSums>& sums) {
+  CellStiffness cell;
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const Body& b = particles.body[p];
+    const double twice_square = 2 * b.radius * b.radius;
+    cell.stiffness.add(sums[p].stiffness, twice_square);
+    cell.damping.add(sums[p].damping, twice_square);
+    const Linearisation light =
+        light_contact(model, table.row(particles.material[p], particles.material[p]), b.radius, 1 / b.inverse_mass);
+    cell.ready_stiffness += twice_square * light.stiffness;
+    cell.ready_damping += twice_square * light.damper;
+  }
+  return cell;
 }
 
 }  // namespace
@@ -178,6 +195,7 @@ StepLimit critical_step(const Particles& particles, const ContactList& list, con
   for (const StepLimit& l : limits)
     if (l.critical < limit.critical) limit = l;
   const double stiffest = *std::max_element(stiffests.begin(), stiffests.end());
+  if (cell.periodic) limit.cell = cell_stiffness(particles, table, model, sums);
   if (rule == StepRule::thesis) limit.critical = std::min(smallest_pair, limit.critical);
   if (punch.mass > 0) {
     limit.punch_stiffness = walls.stiffness()[punch.wall];

@@ -1,6 +1,7 @@
 #pragma once
 // How large a step may be: the stability limits of thesis 4.8, read as stability analysis gives them.
 
+#include "dem/boundary/cell_drive.h"
 #include "dem/boundary/walls.h"
 
 namespace densify::dem {
@@ -32,6 +33,7 @@ struct StepLimit {
   double critical = 0;         ///< [s]
   std::uint32_t particle = 0;  ///< index of the particle that sets it
   double punch_stiffness = 0;  ///< sum over the contacts of each wall is in Walls; here of the punch [N/m]
+  CellStiffness cell;          ///< of a periodic cell
 };
 
 /// The punch as a node of the limit; mass 0 = no moving punch.

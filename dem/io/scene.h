@@ -59,6 +59,7 @@ struct Scene {
   Container container;  ///< with a powder: size has the base (periodic: its proportions), height from the packing
   Mat3 cell_vectors = Mat3::Zero();        ///< periodic: edge vectors in columns [m]; zero: from packing or import
   Mat3 velocity_gradient = Mat3::Zero();   ///< periodic [1/s]
+  std::optional<CellPath> cell_path;       ///< periodic, where the process drives the cell
   std::optional<Powder> powder;            ///< exactly one of powder and import
   std::optional<PackingSettings> packing;  ///< with a powder
   std::optional<ImportSettings> import;

@@ -107,10 +107,10 @@ void check_activation(const Scene& scene, const ScenePlaces& places) {
 
 void check_pressure(const Scene& scene, const ScenePlaces& places) {
   const bool walled = scene.container.shape == ContainerShape::cylinder || scene.container.shape == ContainerShape::box;
-  if (walled && scene.container.punch) return;
+  if ((walled && scene.container.punch) || scene.container.shape == ContainerShape::periodic) return;
   const std::string reason =
       std::string("there is no punch that could apply a pressure; ") +
-      (walled ? "set walls.punch.control = \"pressure\"" : "choose shape = \"cylinder\" or \"box\"") +
+      (walled ? "set walls.punch.control = \"pressure\"" : "choose shape = \"cylinder\", \"box\" or \"periodic\"") +
       ", or remove the pressure";
   if (scene.schedule.pressure(0.0) > 0) places.process->fail("start_pressure", reason);
   for (const Stage& stage : scene.schedule.stages()) {
@@ -153,6 +153,26 @@ void check_container(const Scene& scene, const ScenePlaces& places) {
                        "has no meaning with linear elasticity, whose stiffness is normal_stiffness; "
                        "remove it with poissons_ratio");
   }
+}
+
+void check_cell(const Scene& scene, const ScenePlaces& places) {
+  if (!scene.cell_path) return;
+  if (!scene.velocity_gradient.isZero(0))
+    places.cell->fail("velocity_gradient",
+                      "moves the cell through the whole process, which the stages drive by pressure, stress or "
+                      "strain_rate; remove one of them");
+  if (!scene.loads.empty())
+    places.process->fail("stage",
+                         "the stages drive the cell, and no stress of a periodic cell balances the forces of "
+                         "a [[load]]; remove them");
+  if (scene.integration.method == IntegrationMethod::inertia_free)
+    places.integration->fail("method",
+                             "\"inertia_free\" cannot move a cell that the stages drive; use method = "
+                             "\"explicit\", or accuracy = \"standard\"");
+  if (scene.cell_path->by_stress() && scene.integration.rule == StepRule::thesis)
+    places.integration->fail("rule",
+                             "\"thesis\" looks at one contact at a time and leaves no room for a cell that a "
+                             "stress drives; use rule = \"particle_sum\"");
 }
 
 void check_integration(const Scene& scene, const ScenePlaces& places) {
@@ -205,6 +225,7 @@ void check_scene(const Scene& scene, const ScenePlaces& places) {
     for (std::uint8_t b = a; b < n; ++b) check_pair(scene, places, a, b);
   }
   check_pressure(scene, places);
+  check_cell(scene, places);
   if (scene.contact.sintering) {
     check_activation(scene, places);
   } else if (scene.stop_when == StopWhen::all_necks_at_equilibrium) {

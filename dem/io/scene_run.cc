@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "dem/io/scene_parts.h"
+#include "dem/io/scene_cell.h"
 
 namespace densify::dem {
 
@@ -10,7 +10,12 @@ void read_process(Section& root, Scene& scene, ScenePlaces& places) {
   root.section("process", Need::required, "temperature and pressure over time, linear through stages",
                [&](Section& section) {
                  places.process = section;
-                 scene.schedule = read_schedule(section);
+                 CellPathReader cell(scene.container.shape);
+                 scene.schedule = read_schedule(section, [&](Section& stage, double before, double given) {
+                   cell.start(before);
+                   cell.read_stage(stage, given);
+                 });
+                 scene.cell_path = cell.path();
                  section.choice("stop_when", scene.stop_when,
                                 {{"schedule_ends", StopWhen::schedule_ends},
                                  {"all_necks_at_equilibrium", StopWhen::all_necks_at_equilibrium}},

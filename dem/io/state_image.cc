@@ -232,9 +232,31 @@ void write_state(Hdf5Writer& file, const State& state) {
                     {state.temperature, state.time, state.last_step, state.stable_step, state.critical_step}, "");
   file.list("/state/strain_rate", flat(state.control.strain_rate), "1/s");
   file.list<double>("/state/inertial_number", {state.control.inertial_number}, "1");
+  if (const CellDrive& d = state.cell_drive; d.stage != CellDrive::no_stage) {
+    std::vector<double> n{d.mass, d.damping, d.memory};
+    for (const auto* six : {&d.mean, &d.slope, &d.found}) n.insert(n.end(), six->begin(), six->end());
+    file.list("/state/cell_drive", n, "");
+    file.list("/state/cell_deformation", flat(d.deformation), "1");
+    file.attribute("/state", "cell_stage", d.stage);
+  }
   file.attribute("/state", "steps", state.steps);
   file.attribute("/state", "inertia_free", std::uint64_t(state.inertia_free));
 }
+
+namespace {
+
+CellDrive read_cell_drive(const Hdf5Reader& file) {
+  CellDrive d;
+  if (!file.has("/state/cell_drive")) return d;
+  const auto n = read_list<double>(file, "/state/cell_drive", 21);
+  d.mass = n[0], d.damping = n[1], d.memory = n[2];
+  for (std::size_t c = 0; c < 6; ++c) d.mean[c] = n[3 + c], d.slope[c] = n[9 + c], d.found[c] = n[15 + c];
+  d.stage = file.attribute<std::uint64_t>("/state", "cell_stage");
+  d.deformation = read_matrix(file, "/state/cell_deformation");
+  return d;
+}
+
+}  // namespace
 
 State read_state(const Hdf5Reader& file, const Simulation& simulation) {
   const State& now = simulation.state();
@@ -261,6 +283,7 @@ State read_state(const Hdf5Reader& file, const Simulation& simulation) {
   s.cell.h = read_matrix(file, "/state/cell_h");
   s.cell.origin = read_vector(file, "/state/cell_origin");
   s.cell.velocity_gradient = read_matrix(file, "/state/cell_velocity_gradient");
+  s.cell_drive = read_cell_drive(file);
   s.expansion = read_list<double>(file, "/state/expansion", now.expansion.size());
   s.active_since = read_list<double>(file, "/state/active_since", now.active_since.size());
   const auto clock = read_list<double>(file, "/state/clock", 5);

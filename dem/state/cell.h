@@ -1,5 +1,5 @@
 #pragma once
-// The periodic cell: any parallelepiped, deformed by a prescribed velocity gradient.
+// The periodic cell: any parallelepiped, deformed by a velocity gradient.
 
 #include <Eigen/LU>
 #include <cmath>
@@ -32,6 +32,10 @@ struct Cell {
   Vec3 wrap(const Vec3& x) const;
   /// Translation h n of an image code [m].
   Vec3 shift(std::uint8_t code) const { return h * ImageCode::unpack(code).cast<double>(); }
+  /// Replaces edges that lean far over by shorter ones of the same lattice, so that a sheared cell stays compact.
+  /// Returns the whole numbers n' = M n of a translation with the new edges for n with the old; the unit matrix where
+  /// nothing leans.
+  Eigen::Matrix3i reduce();
   /// Distance between opposite faces along each of the three directions [m].
   Vec3 widths() const;
 };

@@ -79,7 +79,7 @@ TEST_P(EveryPacking, SameWithTwoThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Checkpoint, EveryPacking,
-                         ::testing::Values(Packing{"periodic", periodic_packing},
+                         ::testing::Values(Packing{"periodic", periodic_packing}, Packing{"driven", driven_packing},
                                            Packing{"cylinder", cylinder_packing}),
                          [](const auto& test) { return test.param.name; });
 

@@ -250,6 +250,57 @@ TEST(Scene, ActivationFollowsTheMeltingTemperature) {
 }
 
 // The effective text names every value, the library's too, and reads back to itself.
+// Stages drive a cell; a component keeps its goal until a stage names it, and a pressure of nothing at the start drives
+// nothing.
+TEST(Scene, StagesDriveACell) {
+  const std::string text = R"toml([materials.NiAl]
+library = "NiAl"
+[[powder]]
+material = "NiAl"
+number = 100
+sizes = "list"
+diameters = ["4 um"]
+[specimen]
+shape = "periodic"
+[process]
+start_pressure = "0 Pa"
+[[process.stage]]
+name = "rest"
+duration = "1 s"
+[[process.stage]]
+name = "die"
+duration = "1 s"
+stress = { zz = "-30 MPa" }
+strain_rate = { xy = "1e-3 1/s" }
+[[process.stage]]
+name = "all sides"
+duration = "1 s"
+pressure = "20 MPa"
+[[process.stage]]
+name = "hold"
+duration = "1 s"
+)toml";
+  const Scene s = read_scene_text(text, {});
+  ASSERT_TRUE(s.cell_path);
+  const auto& stages = s.cell_path->stages;
+  ASSERT_EQ(stages.size(), 4u);
+  for (const CellGoal& g : stages[0]) EXPECT_TRUE(g.control == CellControl::rate && g.value == 0);
+  EXPECT_TRUE(stages[1][2].control == CellControl::stress && stages[1][2].value == -30e6);
+  EXPECT_TRUE(stages[1][3].control == CellControl::rate && stages[1][3].value == 1e-3);
+  EXPECT_TRUE(stages[1][0].control == CellControl::rate && stages[1][0].value == 0);
+  for (const std::size_t stage : {2, 3})
+    for (std::size_t c = 0; c < 6; ++c) {
+      EXPECT_TRUE(stages[stage][c].control == CellControl::stress);
+      EXPECT_EQ(stages[stage][c].value, c < 3 ? -20e6 : 0.0);
+    }
+  const Scene again = read_scene_text(s.effective_text, {});
+  EXPECT_EQ(again.effective_text, s.effective_text);
+  EXPECT_EQ(again.cell_path->stages[1][2].value, -30e6);
+  EXPECT_FALSE(
+      read_scene_text(text, {"process.stage.2.stress=", "process.stage.2.strain_rate=", "process.stage.3.pressure="})
+          .cell_path);
+}
+
 TEST(Scene, EffectiveTextReadsBack) {
   std::vector<Scene> scenes{read_scene_text(kComposite, {}), read_scene_text(import_scene(), {})};
   for (const auto& file : example_scenes()) scenes.push_back(read_scene(file, {}));

@@ -73,6 +73,18 @@ inline Setup periodic_packing(int threads) {
   return s;
 }
 
+/// The periodic packing with stresses and rates that drive its cell.
+inline Setup driven_packing(int threads) {
+  Setup s = periodic_packing(threads);
+  s.cell.velocity_gradient.setZero();
+  CellGoals goals;
+  for (std::size_t c = 0; c < 2; ++c) goals[c] = {CellControl::stress, -30e6};
+  goals[2] = {CellControl::rate, -0.03};
+  goals[3] = {CellControl::rate, 0.05};
+  s.cell_path = CellPath{{}, {goals, goals, goals}};
+  return s;
+}
+
 inline Setup cylinder_packing(int threads) {
   Setup s = common_setup(threads);
   add_lattice(s, {4, 4, 4}, 4e-6, Vec3(-8e-6, -8e-6, 0), 7e-6);
@@ -105,7 +117,7 @@ class StateBits {
     for (const auto& w : s.walls.contacts()) add(w.particle), add(w.wall), add(w.tangential);
     add(s.punch), add(s.expansion), add(s.temperature), add(s.time), add(s.last_step), add(s.stable_step);
     add(s.critical_step), add(s.steps), add(s.inertia_free), add(s.active_since), add(s.control.strain_rate);
-    add(s.control.inertial_number);
+    add(s.control.inertial_number), add(s.cell_drive);
   }
   bool operator==(const StateBits&) const = default;
   std::size_t size() const { return bits_.size(); }

@@ -38,7 +38,7 @@ duration = "1 s"
 pressure = "0 Pa"
 )toml"),
             "scene.toml:8: process.start_pressure: there is no punch that could apply a pressure; choose shape = "
-            "\"cylinder\" or \"box\", or remove the pressure");
+            "\"cylinder\", \"box\" or \"periodic\", or remove the pressure");
 }
 
 TEST(SceneMistakes, EquilibriumOfNecksThatCannotForm) {

@@ -1,0 +1,83 @@
+// The cell of a simulation that the process drives.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "dem/simulation.h"
+
+namespace densify::dem {
+
+CellGoal Simulation::cell_goal(std::size_t component) const {
+  const CellPath& path = *setup_.cell_path;
+  const Schedule& schedule = setup_.schedule;
+  return {path.stages[schedule.stage_at(state_.time)][component].control,
+          goal(path, schedule, state_.cell_drive, component, state_.time)};
+}
+
+ProcessLoad Simulation::load() const {
+  const Schedule& schedule = setup_.schedule;
+  if (!stress_driven()) return {pressure(), std::abs(schedule.pressure_rate(state_.time))};
+  ProcessLoad load{0, 0};
+  const double t = state_.time, end = schedule.next_breakpoint(t);
+  for (std::size_t c = 0; c < 6; ++c) {
+    const CellGoal now = cell_goal(c);
+    if (now.control != CellControl::stress) continue;
+    load.size = std::max(load.size, std::abs(now.value));
+    if (!std::isfinite(end)) continue;
+    const double later = setup_.cell_path->stages[schedule.stage_at(t)][c].value;
+    load.rate = std::max(load.rate, std::abs(later - now.value) / (end - t));
+  }
+  return load;
+}
+
+/// From the pass just done and the masses that follow from it; in one order for every number of threads.
+CellStiffness Simulation::equalised_cell_stiffness() const {
+  CellStiffness cell;
+  double sum = 0;
+  for (std::size_t p = 0; p < state_.particles.size(); ++p) {
+    const Body& b = state_.particles.body[p];
+    const double square = b.radius * b.radius;
+    cell.stiffness.add(stiffness_.of[p], 2 * square);
+    sum += square / b.inverse_mass;
+  }
+  const double at_limit = stiffness_.next_step / setup_.integration.step_safety;
+  cell.ready_stiffness = 4 * sum / ((1 + carriage_share) * at_limit * at_limit);
+  return cell;
+}
+
+void Simulation::weigh_cell(CellStiffness sums, double step) {
+  // With friction a contact may be stiffer across than along its normal.
+  const double across =
+      setup_.contact.friction ? std::max(1.0, setup_.contact.friction->tangential_stiffness_ratio) : 1.0;
+  if (across > 1) {
+    const CellStiffness once = sums;
+    sums.stiffness.add(once.stiffness, across - 1);
+    sums.damping.add(once.damping, across - 1);
+  }
+  weigh(state_.cell_drive, sums, carriage_share, step, setup_.integration.step_safety);
+}
+
+/// The step in which a cell at rest strains by a small share: a jump of a stress must not throw it. [s]
+double Simulation::cell_leap() const {
+  constexpr double leap = 0.005;
+  const std::size_t stage = setup_.schedule.stage_at(state_.time);
+  double excess = 0;  // [Pa]
+  for (std::size_t c = 0; c < 6; ++c) {
+    if (setup_.cell_path->stages[stage][c].control != CellControl::stress) continue;
+    excess = std::max(excess, std::abs(cell_goal(c).value - cell_stress_(tensor_places[c][0], tensor_places[c][1])));
+  }
+  return std::sqrt(leap * state_.cell_drive.mass / (state_.cell.volume() * excess));
+}
+
+void Simulation::drive_cell(LeapfrogSteps steps) {
+  constexpr double furthest = 0.05;  // strain of one step
+  kick(state_.cell_drive, state_.cell, *setup_.cell_path, setup_.schedule, state_.time, cell_stress_, steps.kick,
+       steps.drift);
+  const double strain = steps.drift * state_.cell.velocity_gradient.norm();
+  if (!(strain < furthest))
+    throw RunError("the cell deforms by " + std::to_string(strain) +
+                   " in one step; the rates are too fast for the step, or nothing resists the stress that drives it");
+}
+
+}  // namespace densify::dem

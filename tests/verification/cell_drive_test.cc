@@ -1,0 +1,245 @@
+// A periodic cell driven by stress and rate: crystals in closed form, the quality of the control, rotation, threads.
+
+#include <gtest/gtest.h>
+
+#include "tests/dem/small_packings.h"
+#include "tests/support/neck_quadrature.h"
+#include "tests/support/setups.h"
+
+namespace densify::test {
+namespace {
+
+using dem::CellControl;
+using dem::CellGoals;
+using dem::CellPath;
+using dem::testing::StateBits;
+
+constexpr double radius = 5e-6;
+
+dem::CellGoal stress(double value) {
+  return {CellControl::stress, value};
+}
+dem::CellGoal rate(double value) {
+  return {CellControl::rate, value};
+}
+
+/// Goals xx yy zz xy xz yz at the end of the first stage and from there on.
+CellPath to(const CellGoals& goals, const Schedule& schedule) {
+  CellPath path;
+  path.stages.assign(schedule.stages().size(), goals);
+  return path;
+}
+
+CellGoals all_stresses(const Mat3& s) {
+  CellGoals g;
+  for (std::size_t c = 0; c < 6; ++c) g[c] = stress(s(dem::tensor_places[c][0], dem::tensor_places[c][1]));
+  return g;
+}
+
+/// How a controlled stress kept to its goal, from a time on.
+struct Control {
+  double mean = 0;     ///< largest of the six components' mean differences [Pa]
+  double largest = 0;  ///< largest difference at any step [Pa]
+};
+
+Control run_to_end(Simulation& sim, double from) {
+  std::array<double, 6> sum{};
+  double time = 0;
+  Control control;
+  while (!sim.finished()) {
+    sim.evaluate(nullptr);
+    if (sim.state().time >= from) {
+      time += sim.state().last_step;
+      for (std::size_t c = 0; c < 6; ++c) {
+        const dem::CellGoal g = sim.cell_goal(c);
+        if (g.control != CellControl::stress) continue;
+        const double off = sim.cell_stress()(dem::tensor_places[c][0], dem::tensor_places[c][1]) - g.value;
+        sum[c] += off * sim.state().last_step;
+        control.largest = std::max(control.largest, std::abs(off));
+      }
+    }
+    sim.move();
+  }
+  for (const double s : sum) control.mean = std::max(control.mean, std::abs(s) / time);
+  return control;
+}
+
+/// Loose unequal spheres, random but for a lattice behind them, without friction.
+Setup disordered(double duration) {
+  auto contact = elastic_model(dem::Elasticity::hertz, dem::unset);
+  contact.damping_ratio = 0.2;
+  Setup s = empty_setup(nickel_aluminide(), contact, hold(duration, 300, 0));
+  fill_periodic(s, Lattice::face_centred, 3, 9.9e-6, radius);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (std::size_t p = 0; p < s.particles.size(); ++p) {
+    s.particles.reference_radius[p] *= 1 + 0.1 * u(random);
+    s.particles.body[p].position += 2e-7 * Vec3(u(random), u(random), u(random));
+  }
+  return s;
+}
+
+// The stress that drives the cell comes from the resultants and from the forces through its faces; it is (6.10), the
+// sum over all contacts.
+TEST(CellDrive, StressIsTheSumOverTheContacts) {
+  dem::Setup s = disordered(1);
+  s.cell_path = to({stress(0), stress(0), stress(0), rate(0), rate(0), rate(0)}, s.schedule);
+  s.integration.skin = 0.05;
+  Simulation sim(s);
+  dem::Recording record;
+  for (int n = 0; n < 200; ++n) {
+    sim.evaluate(&record);
+    const Mat3 sum = contact_stress(sim, record, sim.state().cell.volume());
+    ASSERT_LT((sim.cell_stress() - sum).norm(), 1e-9 * sum.norm() + 1e-3) << n;
+    sim.move();
+  }
+}
+
+/// A face-centred crystal of linear springs, 12 contacts a sphere, that no stress holds together at first.
+dem::Setup crystal(double stiffness, double steps, std::vector<double> stage_shares) {
+  auto contact = elastic_model(dem::Elasticity::linear, stiffness);
+  contact.damping_ratio = 0.2;
+  auto s = empty_setup(copper(), contact, hold(1, 300, 0));
+  fill_periodic(s, Lattice::face_centred, 2, 2 * radius * (1 - 1e-3), radius);
+  const double limit = Simulation(s).step_limit().critical;
+  std::vector<Stage> stages;
+  for (const double share : stage_shares) stages.push_back({"stage", share * steps * limit, 300, 0});
+  s.schedule = Schedule(300, 0, stages);
+  return s;
+}
+
+/// Its stress at the start, hydrostatic: 6 contacts a sphere of volume L^3/sqrt2, sigma = 2 sqrt2 F/L^2.
+double prestress(double stiffness) {
+  const double l = 2 * radius * (1 - 1e-3);
+  return -2 * std::sqrt(2.0) * stiffness * (2 * radius - l) / (l * l);
+}
+
+// Stiffness over six decades: the mean of every controlled component within 0.1 % of its goal and no step further than
+// 1 % away, in the ramp and after it, with all six components under stress; and the strain is that of the crystal's
+// constants C11 = sqrt2 k/L, C12 = C44 = k/(sqrt2 L), to the share 3e-3 by which overlap and strain change them.
+TEST(CellDrive, StressOfACrystalAtAnyStiffness) {
+  for (const double k : {1e2, 1e4, 1e6, 1e8}) {
+    auto s = crystal(k, 6000, {0.5, 0.5});
+    const double p0 = prestress(k), l = 2 * radius * (1 - 1e-3);
+    Mat3 added = 0.05 * p0 * Vec3(1, 0.7, 0.4).asDiagonal().toDenseMatrix();
+    added(0, 1) = added(1, 0) = 0.02 * p0;
+    s.cell_path = to(all_stresses(p0 * Mat3::Identity() + added), s.schedule);
+    Simulation sim(s);
+    const Control c = run_to_end(sim, 0.01 * s.schedule.end());
+    EXPECT_LT(c.mean, 1e-3 * std::abs(p0)) << k;
+    EXPECT_LT(c.largest, 1e-2 * std::abs(p0)) << k;
+    const double c11 = std::sqrt(2.0) * k / l, c12 = k / (std::sqrt(2.0) * l), c44 = c12;
+    const Mat3& f = sim.state().cell_drive.deformation;
+    const double mean = added.trace() / (c11 + 2 * c12) / 3;
+    for (int i = 0; i < 3; ++i) {
+      const double e = mean + (added(i, i) - added.trace() / 3) / (c11 - c12);
+      EXPECT_NEAR(std::log(f(i, i)) / e, 1, 3e-2) << k << " " << i;
+    }
+    EXPECT_NEAR(f(0, 1) / (added(0, 1) / c44), 1, 3e-2) << k;
+  }
+}
+
+// Die pressing: no lateral strain, an axial stress.  The strain is (sigma - sigma_0)/C11, the lateral stress changes by
+// C12/C11 = 1/2 of the axial.
+TEST(CellDrive, MixedControl) {
+  constexpr double k = 1e5;
+  auto s = crystal(k, 6000, {0.5, 0.5});
+  const double p0 = prestress(k), l = 2 * radius * (1 - 1e-3), added = 0.05 * p0;
+  s.cell_path = to({rate(0), rate(0), stress(p0 + added), rate(0), rate(0), rate(0)}, s.schedule);
+  Simulation sim(s);
+  const Control c = run_to_end(sim, 0.01 * s.schedule.end());
+  EXPECT_LT(c.mean, 1e-3 * std::abs(p0));
+  const Mat3& f = sim.state().cell_drive.deformation;
+  EXPECT_EQ(f(0, 0), 1);
+  EXPECT_EQ(f(1, 1), 1);
+  EXPECT_NEAR(std::log(f(2, 2)) / (added / (std::sqrt(2.0) * k / l)), 1, 3e-2);
+  EXPECT_NEAR((sim.cell_stress()(0, 0) - p0) / added, 0.5, 0.02);
+}
+
+// Free sintering: at no stress every contact of a face-centred crystal carries nothing, so that the crystal shrinks as
+// two free spheres do (Table 5.1: u/2r = 0.0341209017 at 1e4 s, 0.0746232217 at 1e5 s).
+TEST(CellDrive, FreeSinteringOfACrystalIsThatOfTwoSpheres) {
+  constexpr double r = 22.5e-6;
+  auto contact = elastic_model(dem::Elasticity::linear, 7e5);
+  contact.sintering = dem::SinteringSettings{};
+  contact.sintering->relaxation_time = 0;
+  contact.sintering->damping_ratio = 0;
+  contact.sintering->starting_neck = 1e-3;
+  auto s = empty_setup(copper(), contact, Schedule(1300, 0, {{"short", 1e4, 1300, 0}, {"long", 9e4, 1300, 0}}));
+  fill_periodic(s, Lattice::face_centred, 2, 2 * r * (1 - 1e-9), r);
+  s.integration.mass_scaling = 1e15;
+  s.cell_path = to(all_stresses(Mat3::Zero()), s.schedule);
+  s.cell_path->start = s.cell_path->stages[0];
+  Simulation sim(s);
+  const double strains[] = {0.0341209017, 0.0746232217};
+  for (std::size_t stage = 0; stage < 2; ++stage) {
+    while (sim.state().time < s.schedule.stage_end(stage)) sim.advance(nullptr);
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NEAR((1 - sim.state().cell_drive.deformation(i, i)) / strains[stage], 1, 1e-3) << stage << i;
+  }
+}
+
+// Simple shear by two and a half edges, at a rate that grows from nothing: the lattice changes its edges and stays
+// compact, and the deformation goes on.
+TEST(CellDrive, SimpleShearThroughManyEdges) {
+  dem::Setup s = disordered(1e-5);
+  s.cell_path = to({rate(0), rate(0), rate(0), rate(5e5), rate(0), rate(0)}, s.schedule);
+  const double volume = s.cell.volume();
+  Simulation sim(s);
+  while (!sim.finished()) {
+    sim.advance(nullptr);
+    const Vec3 a = sim.state().cell.h.col(0), b = sim.state().cell.h.col(1);
+    ASSERT_LT(std::abs(a.dot(b)) / std::min(a.squaredNorm(), b.squaredNorm()), 0.75);
+  }
+  EXPECT_NEAR(sim.state().cell_drive.deformation(0, 1), 2.5, 1e-9);
+  EXPECT_NEAR(sim.state().cell.volume() / volume, 1, 1e-9);
+}
+
+// The axes x, y, z renamed y, z, x: the same strains under the renamed stresses.
+TEST(CellDrive, AxesRenamed) {
+  const auto strain = [](int shift) {
+    dem::Setup s = disordered(1);
+    s.integration.mass_scaling = 1e6;
+    const auto turned = [&](const Vec3& x) { return Vec3(x[(3 - shift) % 3], x[(4 - shift) % 3], x[(5 - shift) % 3]); };
+    for (auto& b : s.particles.body) b.position = turned(b.position);
+    CellGoals goals;
+    for (int i = 0; i < 3; ++i) goals[std::size_t((i + shift) % 3)] = stress(-1e9 * (1 + 0.2 * i));
+    const double limit = Simulation(s).step_limit().critical;
+    s.schedule = hold(400 * limit, 300, 0);
+    s.cell_path = to(goals, s.schedule);
+    Simulation sim(s);
+    while (!sim.finished()) sim.advance(nullptr);
+    Vec3 e;
+    for (int i = 0; i < 3; ++i) e[i] = sim.state().cell_drive.deformation((i + shift) % 3, (i + shift) % 3) - 1;
+    return e;
+  };
+  const Vec3 reference = strain(0);
+  EXPECT_GT(reference.norm(), 1e-3);
+  EXPECT_LT((strain(1) - reference).norm(), 1e-6 * reference.norm());  // rounding of some hundred steps
+}
+
+// One thread or two, at rest in the middle or not: the same bits.
+TEST(CellDrive, ThreadsAndRestart) {
+  for (const bool equalised : {false, true}) {
+    dem::Setup s = disordered(1e-5);
+    s.cell_path = to({stress(-1e9), stress(-1e9), rate(-10), stress(0), rate(0), rate(20)}, s.schedule);
+    if (equalised) {
+      s.integration.inertia = dem::Inertia::equalised;
+      s.integration.fixed_step = 1e-8;
+    }
+    Simulation one(s);
+    s.integration.threads = 2;
+    Simulation two(s), later(s);
+    for (int n = 0; n < 100; ++n) {
+      one.advance(nullptr);
+      two.advance(nullptr);
+      if (n == 49) later.restore(two.state());
+      if (n > 49) later.advance(nullptr);
+    }
+    EXPECT_TRUE(StateBits(one.state()) == StateBits(two.state())) << equalised;
+    EXPECT_TRUE(StateBits(one.state()) == StateBits(later.state())) << equalised;
+  }
+}
+
+}  // namespace
+}  // namespace densify::test
