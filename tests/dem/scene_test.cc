@@ -249,7 +249,6 @@ TEST(Scene, ActivationFollowsTheMeltingTemperature) {
             700);
 }
 
-// The effective text names every value, the library's too, and reads back to itself.
 // Stages drive a cell; a component keeps its goal until a stage names it, and a pressure of nothing at the start drives
 // nothing.
 TEST(Scene, StagesDriveACell) {
@@ -301,6 +300,7 @@ duration = "1 s"
           .cell_path);
 }
 
+// The effective text names every value, the library's too, and reads back to itself.
 TEST(Scene, EffectiveTextReadsBack) {
   std::vector<Scene> scenes{read_scene_text(kComposite, {}), read_scene_text(import_scene(), {})};
   for (const auto& file : example_scenes()) scenes.push_back(read_scene(file, {}));
