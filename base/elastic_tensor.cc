@@ -1,10 +1,10 @@
-#include "dem/network/isotropic.h"
+#include "base/elastic_tensor.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
-namespace densify::dem {
+namespace densify {
 
 namespace {
 
@@ -65,4 +65,4 @@ Vec6 free_rate(const Mat6& c, const Vec6& stress) {
   return f.asDiagonal() * (eigen.eigenvectors() * parts);
 }
 
-}  // namespace densify::dem
+}  // namespace densify

@@ -1,9 +1,9 @@
 #pragma once
 // What of a stiffness or viscosity tensor is isotropic, and how far the rest is.
 
-#include "dem/network/probes.h"
+#include "base/tensor.h"
 
-namespace densify::dem {
+namespace densify {
 
 /// Of a stiffness: moduli [Pa]; of a viscosity: bulk and shear viscosity [Pa s].
 struct IsotropicPart {
@@ -25,4 +25,4 @@ Mat6 rotated(const Mat6&, const Mat3& q);
 /// none.  Shear rates as engineering shears.
 Vec6 free_rate(const Mat6& c, const Vec6& stress);
 
-}  // namespace densify::dem
+}  // namespace densify

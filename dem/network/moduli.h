@@ -2,7 +2,7 @@
 // The material that a packing is at one moment: elastic moduli by several contact models, viscosities, sintering
 // stress and free densification rate.
 
-#include "dem/network/isotropic.h"
+#include "base/elastic_tensor.h"
 #include "dem/network/neck_models.h"
 #include "dem/network/structure.h"
 

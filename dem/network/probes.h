@@ -8,9 +8,6 @@
 
 namespace densify::dem {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;  ///< rows and columns xx yy zz yz xz xy, shear rates as engineering shears
-
 /// What joins the two ends of an edge; dashpots when the motion is a rate.
 struct EdgeLaw {
   double coefficient;  ///< along the normal [N/m]

@@ -1,14 +1,12 @@
 #pragma once
 // The particles of one RVE: plain data, one owner (Simulation).
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
-namespace densify::dem {
+#include "base/tensor.h"
 
-using Vec3 = Eigen::Vector3d;
-using Mat3 = Eigen::Matrix3d;
+namespace densify::dem {
 
 /// What the contact pass reads of a particle, in one cache line.
 struct alignas(64) Body {
