@@ -105,7 +105,7 @@ void print_moment(const dem::SpecimenNetwork& s, const dem::NetworkStructure& n)
 }
 
 void print_elastic(const std::string& name, const dem::TensorAnswer& a) {
-  auto line = [](const dem::IsotropicPart& p) {
+  auto line = [](const IsotropicPart& p) {
     return fmt::format("E {:9.4g} Pa  nu {:7.4f}  K {:9.4g} Pa  G {:9.4g} Pa  anisotropy {:.3f}", p.youngs, p.poisson,
                        p.bulk, p.shear, p.distance);
   };
@@ -116,7 +116,7 @@ void print_elastic(const std::string& name, const dem::TensorAnswer& a) {
 }
 
 void print_viscous(const dem::ViscousAnswer& v) {
-  auto line = [](const dem::IsotropicPart& p) {
+  auto line = [](const IsotropicPart& p) {
     return fmt::format("bulk {:9.4g} Pa s  shear {:9.4g} Pa s  viscous Poisson's ratio {:7.4f}", p.bulk, p.shear,
                        p.poisson);
   };

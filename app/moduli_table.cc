@@ -20,13 +20,13 @@ std::string header(const std::string& column, std::string unit) {
   return column + "_" + unit;
 }
 
-void add_tensor(std::vector<Cell>& cells, const std::string& name, const std::string& unit, const dem::Mat6& c) {
+void add_tensor(std::vector<Cell>& cells, const std::string& name, const std::string& unit, const Mat6& c) {
   for (int a = 0; a < 6; ++a)
     for (int b = a; b < 6; ++b)
       cells.push_back({fmt::format("{}_{}{}", name, a + 1, b + 1), unit, 0.5 * (c(a, b) + c(b, a))});
 }
 
-void add_vector(std::vector<Cell>& cells, const std::string& name, const std::string& unit, const dem::Vec6& v) {
+void add_vector(std::vector<Cell>& cells, const std::string& name, const std::string& unit, const Vec6& v) {
   for (int a = 0; a < 6; ++a) cells.push_back({name + "_" + component[a], unit, v[a]});
 }
 
@@ -81,8 +81,8 @@ std::vector<Cell> moment_cells(const dem::SpecimenNetwork& s, const dem::Network
                           {"loosely_held", "", double(n.loose)},
                           {"islands", "", double(n.islands)},
                           {"spanning_particles", "", double(n.spanning)}};
-  const dem::Mat3& f = n.fabric;
-  dem::Vec6 fabric;
+  const Mat3& f = n.fabric;
+  Vec6 fabric;
   fabric << f(0, 0), f(1, 1), f(2, 2), f(1, 2), f(0, 2), f(0, 1);
   add_vector(cells, "fabric", "", fabric);
   return cells;
@@ -91,7 +91,7 @@ std::vector<Cell> moment_cells(const dem::SpecimenNetwork& s, const dem::Network
 std::vector<Cell> stiffness_cells(const dem::TensorAnswer& a) {
   std::vector<Cell> cells;
   for (const bool relaxed : {true, false}) {
-    const dem::IsotropicPart& p = relaxed ? a.relaxed : a.affine;
+    const IsotropicPart& p = relaxed ? a.relaxed : a.affine;
     const std::string of = relaxed ? "" : "affine_";
     cells.push_back({of + "youngs_modulus", "Pa", p.youngs});
     cells.push_back({of + "poissons_ratio", "", p.poisson});
@@ -110,7 +110,7 @@ std::vector<Cell> viscosity_cells(const dem::ViscousAnswer& v) {
   const std::string pas = "Pa s";
   std::vector<Cell> cells{{"flowing_contacts", "", double(v.flowing)}, {"rigid_contacts", "", double(v.rigid)}};
   for (const bool relaxed : {true, false}) {
-    const dem::IsotropicPart& p = relaxed ? v.viscosity.relaxed : v.viscosity.affine;
+    const IsotropicPart& p = relaxed ? v.viscosity.relaxed : v.viscosity.affine;
     const std::string of = relaxed ? "" : "affine_";
     cells.push_back({of + "bulk_viscosity", pas, p.bulk});
     cells.push_back({of + "shear_viscosity", pas, p.shear});

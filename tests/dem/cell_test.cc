@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+using namespace densify;
 using namespace densify::dem;
 
 // A sheared cell h = [[2,1,0],[0,2,0],[0,0,2]]: the face pairs of x are 2*2*2/|(1,2,0)x(0,0,2)| = 8/sqrt(20) apart.

@@ -8,11 +8,9 @@
 
 namespace densify::test {
 
-using dem::Mat3;
 using dem::Particles;
 using dem::Setup;
 using dem::Simulation;
-using dem::Vec3;
 
 /// Copper of Table 5.1 (D_gb delta = 3.832e-19 m^3/s as prefactor x width), active at every temperature.
 inline dem::Material copper() {
