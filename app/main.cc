@@ -8,6 +8,7 @@
 #include "app/check.h"
 #include "app/moduli.h"
 #include "app/run.h"
+#include "app/stresses.h"
 #include "app/trade.h"
 #include "app/trade_ladder.h"
 #include "base/check.h"
@@ -20,6 +21,20 @@ namespace {
 constexpr const char* exit_codes =
     "Exit codes: 0 done; 1 internal error; 2 bad input; 3 run stopped by a guard; 4 file error; 5 interrupted, "
     "checkpoint written.";
+
+/// Options of the commands that read a result.
+void add_choice(CLI::App& command, densify::app::ChosenResult& result) {
+  command.add_option("RESULT", result.source, "A folder of results, a result.h5, or a scene, which is run first")
+      ->required();
+  command.add_option("--at-time", result.times, "The snapshot nearest to a time, e.g. \"20 min\"; again for each")
+      ->take_all();
+  command.add_option("--at-density", result.densities, "The snapshot nearest to a relative density; again for each")
+      ->take_all();
+  command.add_option("--out", result.folder, "Folder of the tables; without it that of the result");
+  command.add_option("--set", result.overrides, "path.to.key=value of a scene, again for each")->take_all();
+  command.add_option("--threads", result.threads, "Threads of a scene's run")->check(CLI::Range(1, 1024));
+  command.add_flag("--quiet", result.quiet, "Tables only");
+}
 
 int run_main(int argc, char** argv) {
   CLI::App app{"Densify: how a powder becomes a solid part under heat and pressure."};
@@ -81,15 +96,7 @@ int run_main(int argc, char** argv) {
   densify::app::ModuliCommand moduli;
   CLI::App* moduli_command = app.add_subcommand(
       "moduli", "Elastic moduli, viscosities and sintering stress of the contact network at moments of a result");
-  moduli_command
-      ->add_option("RESULT", moduli.source, "A folder of results, a result.h5, or a scene, which is run first")
-      ->required();
-  moduli_command
-      ->add_option("--at-time", moduli.times, "The snapshot nearest to a time, e.g. \"20 min\"; again for each")
-      ->take_all();
-  moduli_command
-      ->add_option("--at-density", moduli.densities, "The snapshot nearest to a relative density; again for each")
-      ->take_all();
+  add_choice(*moduli_command, moduli);
   moduli_command
       ->add_option("--model", moduli.models,
                    "Contact model: normal_spring, bonded_neck, neck_beam or series; again for each; without it all")
@@ -105,12 +112,13 @@ int run_main(int argc, char** argv) {
       ->add_option("--rigid", moduli.rigid,
                    "Viscosity of contacts that do not flow, over the median of those that do; without it 1e4")
       ->check(CLI::Range(1.0, 1e12));
-  moduli_command->add_option("--out", moduli.folder, "Folder of the tables; without it that of the result");
-  moduli_command->add_option("--set", moduli.overrides, "path.to.key=value of a scene, again for each")->take_all();
-  moduli_command->add_option("--threads", moduli.threads, "Threads of a scene's run")->check(CLI::Range(1, 1024));
   moduli_command->add_flag("--soft-modes", moduli.soft_modes,
                            "Count the motions that nothing resists; factorises, for up to some thousand particles");
-  moduli_command->add_flag("--quiet", moduli.quiet, "Tables only");
+
+  densify::app::StressesCommand stresses;
+  CLI::App* stresses_command = app.add_subcommand(
+      "stresses", "Stress in necks, particles and the specimen at moments of a result: tables and histograms");
+  add_choice(*stresses_command, stresses);
 
   CLI::App* ladder_command =
       app.add_subcommand("help-ladder", "Every key of a ladder with unit, range, default and meaning");
@@ -134,6 +142,7 @@ int run_main(int argc, char** argv) {
   if (check_command->parsed()) return densify::app::check_command(check);
   if (bench_command->parsed()) return densify::app::bench_command(bench);
   if (moduli_command->parsed()) return densify::app::moduli_command(moduli);
+  if (stresses_command->parsed()) return densify::app::stresses_command(stresses);
   if (trade_command->parsed()) return densify::app::trade_command(trade);
   if (ladder_command->parsed()) std::fputs(densify::app::ladder_help().c_str(), stdout);
   if (scene_command->parsed()) std::fputs(densify::dem::scene_help().c_str(), stdout);

@@ -2,23 +2,12 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
-
-#include "base/check.h"
-#include "dem/io/atomic_file.h"
-
 namespace densify::app {
 
 namespace {
 
 using Cell = ResultTable::Cell;
 constexpr const char* component[6] = {"xx", "yy", "zz", "yz", "xz", "xy"};
-
-std::string header(const std::string& column, std::string unit) {
-  if (unit.empty()) return column;
-  for (auto at = unit.find(' '); at != std::string::npos; at = unit.find(' ')) unit[at] = '_';
-  return column + "_" + unit;
-}
 
 void add_tensor(std::vector<Cell>& cells, const std::string& name, const std::string& unit, const Mat6& c) {
   for (int a = 0; a < 6; ++a)
@@ -42,31 +31,6 @@ void add_checks(std::vector<Cell>& cells, const dem::TensorAnswer& a) {
 }
 
 }  // namespace
-
-void ResultTable::add_row(std::string label, const std::vector<Cell>& cells) {
-  if (label_.empty())
-    for (const Cell& c : cells) column_.push_back(c.column), unit_.push_back(c.unit), values_.emplace_back();
-  label_.push_back(std::move(label));
-  for (std::size_t c = 0; c < cells.size(); ++c) values_[c].push_back(cells[c].value);
-}
-
-void ResultTable::write_csv(const std::filesystem::path& folder, const std::string& name,
-                            const std::string& label_name) const {
-  std::string text = label_name;
-  for (std::size_t c = 0; c < column_.size(); ++c) text += ',' + header(column_[c], unit_[c]);
-  text += '\n';
-  for (std::size_t r = 0; r < label_.size(); ++r) {
-    text += label_[r];
-    for (const auto& column : values_) text += std::isnan(column[r]) ? ",nan" : fmt::format(",{}", column[r]);
-    text += '\n';
-  }
-  dem::write_atomically(folder / (name + ".csv"), {text}, dem::Durability::kill);
-}
-
-void ResultTable::write_hdf5(dem::Hdf5Writer& file, const std::string& group, const std::string& label_name) const {
-  file.texts(group + "/" + label_name, label_);
-  for (std::size_t c = 0; c < column_.size(); ++c) file.list(group + "/" + column_[c], values_[c], unit_[c]);
-}
 
 std::vector<Cell> moment_cells(const dem::SpecimenNetwork& s, const dem::NetworkStructure& n) {
   std::vector<Cell> cells{{"time", "s", s.time},

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <thread>
 
+#include "app/draw.h"
 #include "app/progress_line.h"
 #include "app/trade_jobs.h"
 #include "base/check.h"
-#include "base/data_path.h"
 #include "base/version.h"
 #include "dem/ensemble.h"
 #include "dem/io/atomic_file.h"
@@ -120,19 +119,6 @@ void print_trade(const Ladder& ladder, const std::vector<TradeRow>& rows, const 
   for (const double target : {1e-2, 3e-3, 1e-3}) fmt::print("{}\n", target_text(ladder, rows, target));
 }
 
-/// trade.png and trade.svg beside trade.csv, by the shipped script.
-void plot(const fs::path& folder) {
-  const std::string script = data_path("tools/plot_trade.py").string();
-  const std::string files = fmt::format("'{}' -o '{}'", (folder / "trade.csv").string(), (folder / "trade").string());
-  bool drawn = false;
-  for (const char* python : {"python3", "/usr/bin/python3"})  // the second is the one that Debian's packages serve
-    drawn = drawn || std::system(fmt::format("{} '{}' {} 2>/dev/null", python, script, files).c_str()) == 0;
-  if (drawn)
-    fmt::print("\nplots in {} and {}\n", (folder / "trade.png").string(), (folder / "trade.svg").string());
-  else
-    fmt::print("\nno plot (it needs python3-matplotlib); later: python3 {} {}\n", script, files);
-}
-
 }  // namespace
 
 int trade_command(const TradeCommand& command) {
@@ -170,7 +156,8 @@ int trade_command(const TradeCommand& command) {
   dem::write_atomically(folder / "trade.csv", {trade_csv(ladder, rows, points.names)}, dem::Durability::kill);
   if (command.quiet) return 0;
   print_trade(ladder, rows, points);
-  plot(folder);
+  if (draw("plot_trade.py", {folder / "trade.csv", "-o", folder / "trade"}))
+    fmt::print("\nplots in {} and {}\n", (folder / "trade.png").string(), (folder / "trade.svg").string());
   fmt::print("table in {}\n", (folder / "trade.csv").string());
   return 0;
 }

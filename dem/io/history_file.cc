@@ -28,23 +28,6 @@ void append_number(std::string& row, double value) {
   row.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
 }
 
-/// A text field; quoted after RFC 4180 when it must be.
-void append_text(std::string& row, std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-    row += text;
-    return;
-  }
-  row += '"';
-  for (const char c : text) {
-    if (c == '\n' || c == '\r')
-      row += ' ';  // one line a row
-    else
-      row += c;
-    if (c == '"') row += c;
-  }
-  row += '"';
-}
-
 std::vector<std::string> split(std::string_view line) {
   std::vector<std::string> fields(1);
   bool quoted = false;
@@ -62,6 +45,16 @@ std::vector<std::string> split(std::string_view line) {
 }
 
 }  // namespace
+
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string field = "\"";
+  for (const char c : text) {
+    field += c == '\n' || c == '\r' ? ' ' : c;  // one line a row
+    if (c == '"') field += c;
+  }
+  return field + '"';
+}
 
 HistoryFile::HistoryFile(std::filesystem::path path, std::vector<HistoryColumn> columns, int descriptor,
                          std::uint64_t bytes)
@@ -115,7 +108,7 @@ std::uint64_t HistoryFile::add_row(std::span<const double> numbers, std::string_
   for (const auto& c : columns_) {
     if (&c != &columns_.front()) row += ',';
     if (c.name == text_column)
-      append_text(row, stage);
+      row += csv_field(stage);
     else
       append_number(row, numbers[next++]);
   }

@@ -46,6 +46,9 @@ class HistoryFile {
   std::uint64_t bytes_;
 };
 
+/// A text as a field of a table; quoted after RFC 4180 when it must be, and always on one line.
+std::string csv_field(std::string_view text);
+
 /// The content of a history file.
 struct History {
   std::vector<std::string> columns;         ///< names of the columns of numbers

@@ -59,6 +59,13 @@ void write_walls(Hdf5Writer& file, const std::string& group, const Snapshot& s) 
   file.table(group + "/force", s.wall_force, "N");
 }
 
+void write_wall_contacts(Hdf5Writer& file, const std::string& group, const Snapshot& s) {
+  file.list(group + "/id", s.wall_contact_id, "");
+  file.list(group + "/wall", s.wall_contact_wall, "");
+  file.table(group + "/force", s.wall_contact_force, "N");
+  file.table(group + "/arm", s.wall_contact_arm, "m");
+}
+
 void write_snapshot(Hdf5Writer& file, const std::string& group, const Snapshot& s) {
   file.group(group);
   file.attribute(group, "time", s.moment.time);
@@ -69,7 +76,10 @@ void write_snapshot(Hdf5Writer& file, const std::string& group, const Snapshot& 
   file.texts(group + "/materials", s.materials);
   write_particles(file, group + "/particles", s);
   write_contacts(file, group + "/contacts", s);
-  if (!s.wall.empty()) write_walls(file, group + "/walls", s);
+  if (!s.wall.empty()) {
+    write_walls(file, group + "/walls", s);
+    write_wall_contacts(file, group + "/wall_contacts", s);
+  }
   if (!s.cell.periodic) return;
   file.table(group + "/cell/edges", {s.cell.h.data(), 9}, 3, "m");  // columns of h: one edge vector a row
   file.list(group + "/cell/origin", std::vector<double>(s.cell.origin.data(), s.cell.origin.data() + 3), "m");

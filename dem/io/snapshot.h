@@ -1,9 +1,9 @@
 #pragma once
 // What result files and pictures show of one moment, in the user's numbering; plain data, taken once for all of them.
 
-#include <array>
 #include <string>
 
+#include "dem/measure/stress.h"
 #include "dem/simulation.h"
 
 namespace densify::dem {
@@ -16,9 +16,6 @@ struct Moment {
   double relative_density = unset;  ///< by envelope (5.5)
   std::string stage;
 };
-
-/// A symmetric tensor: xx yy zz yz xz xy.
-using Stress = std::array<double, 6>;
 
 /// Arrays of features that a scene leaves out are empty.
 struct Snapshot {
@@ -33,7 +30,7 @@ struct Snapshot {
   std::vector<double> radius;               ///< [m]
   std::vector<Vec3> velocity;               ///< [m/s]
   std::vector<Vec3> angular_velocity;       ///< only with friction [rad/s]
-  std::vector<Stress> stress;               ///< particle stress (6.5, 6.6), tension positive [Pa]
+  std::vector<Stress> stress;               ///< total particle stress (6.5, 6.6) [Pa]
   std::vector<std::uint32_t> coordination;  ///< contacts with other particles
 
   // Contacts that transmit force now: touching, or joined by a neck.
@@ -51,6 +48,13 @@ struct Snapshot {
 
   std::vector<Wall> wall;
   std::vector<Vec3> wall_force;  ///< of the powder on each wall [N]
+
+  // Particles that touch walls.
+  std::vector<std::uint32_t> wall_contact_id;
+  std::vector<std::uint8_t> wall_contact_wall;
+  std::vector<Vec3> wall_contact_force;  ///< on the particle [N]
+  std::vector<Vec3> wall_contact_arm;    ///< from its centre to the contact point [m]
+
   Cell cell;
 };
 
@@ -58,16 +62,10 @@ struct Snapshot {
 /// positions and forces are of the same time.
 Snapshot take_snapshot(const Simulation&, const Recording&, Moment);
 
-/// Particle stress sigma_p = (1/V_p) sum of s (x) F over all contacts, walls included, with s from the centre to the
-/// contact point and V_p the sphere's volume (6.5), symmetrised (6.6); tension positive [Pa], in the state's order.
-std::vector<Stress> particle_stresses(const State&, const Recording&);
+/// Place of each id in the lists of particles, by id; the number of particles for an id that there is not.
+std::vector<std::uint32_t> places_of_ids(const Snapshot&);
 
 /// A number as it stands in names of files and groups, 000000 and on.
 std::string six_digits(std::uint64_t);
-
-/// Mean stress (6.8) [Pa], tension positive.
-double mean_stress(const Stress&);
-/// Von Mises stress sqrt(3/2 s:s) of the deviator s (6.7) [Pa].
-double von_mises_stress(const Stress&);
 
 }  // namespace densify::dem

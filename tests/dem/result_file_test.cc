@@ -171,32 +171,3 @@ TEST(Snapshot, StressOfAPressedPair) {
     EXPECT_EQ(s.coordination[p], 1u);
   }
 }
-
-// The particle stresses add up to the stress of the cell (6.9 = 6.10): sum of branch (x) force over the contacts.
-TEST(Snapshot, ParticleStressesAddUp) {
-  Simulation simulation(periodic_packing(1));
-  run_steps(simulation, 150);
-  const Snapshot s = shoot(simulation);
-  Mat3 by_contacts = Mat3::Zero(), by_particles = Mat3::Zero();
-  for (std::size_t c = 0; c < s.branch.size(); ++c) {
-    const Vec3 force = s.normal_force[c] * s.branch[c].normalized() + s.tangential_force[c];
-    by_contacts += s.branch[c] * force.transpose();
-  }
-  for (std::size_t p = 0; p < s.id.size(); ++p) {
-    const Stress& t = s.stress[p];
-    Mat3 full;
-    full << t[0], t[5], t[4], t[5], t[1], t[3], t[4], t[3], t[2];
-    by_particles += 4.0 / 3 * M_PI * std::pow(s.radius[p], 3) * full;
-  }
-  const Mat3 symmetric = 0.5 * (by_contacts + by_contacts.transpose());
-  EXPECT_GT(symmetric.norm(), 0);
-  EXPECT_LT((by_particles - symmetric).norm(), 1e-12 * symmetric.norm());
-}
-
-// Uniaxial tension 3: mean 1, von Mises 3; pure shear tau: sqrt(3) tau.
-TEST(Snapshot, MeasuresOfStress) {
-  EXPECT_DOUBLE_EQ(mean_stress({3, 0, 0, 0, 0, 0}), 1);
-  EXPECT_DOUBLE_EQ(von_mises_stress({3, 0, 0, 0, 0, 0}), 3);
-  EXPECT_DOUBLE_EQ(von_mises_stress({0, 0, 0, 0, 2, 0}), 2 * std::sqrt(3.0));
-  EXPECT_DOUBLE_EQ(von_mises_stress({5, 5, 5, 0, 0, 0}), 0);
-}

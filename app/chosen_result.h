@@ -1,0 +1,36 @@
+#pragma once
+// What commands on results share: which result, which of its moments, where their tables go.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dem/network/specimen_network.h"
+
+namespace densify::app {
+
+struct ChosenResult {
+  std::string source;                  ///< a result folder, a result.h5, or a scene that is run first
+  std::string folder;                  ///< of the tables; empty: that of the result
+  std::vector<std::string> times;      ///< with units
+  std::vector<double> densities;       ///< relative
+  std::vector<std::string> overrides;  ///< of a scene
+  int threads = 0;                     ///< of a scene's run
+  bool quiet = false;
+
+  /// Moments were named.
+  bool asked() const { return !times.empty() || !densities.empty(); }
+};
+
+/// The result that the command names; a scene is run first.
+std::filesystem::path result_file(const ChosenResult&);
+
+/// The snapshots nearest to the times and densities, or all.  Throws InputError for what the result `file` does not
+/// reach.
+std::vector<dem::StoredMoment> chosen_moments(const std::vector<dem::StoredMoment>& all, const ChosenResult&,
+                                              const std::filesystem::path& file);
+
+/// The folder of the tables, made.
+std::filesystem::path table_folder(const ChosenResult&, const std::filesystem::path& file);
+
+}  // namespace densify::app
