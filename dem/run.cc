@@ -210,7 +210,9 @@ void Run::prepare() {
   next_row_ = next_multiple(row_interval_, memory_.time);
   next_snapshot_ = next_multiple(snapshot_interval_, last_snapshot_);
   results_.emplace(options_.folder, description, position_.snapshots);
-  if (scene_.output.visualisation) pictures_.emplace(paths_.pictures, position_.snapshots);
+  if (scene_.output.visualisation)
+    pictures_.emplace(paths_.pictures, position_.snapshots,
+                      scene_.output.stress_fields ? StressFields::written : StressFields::left_out);
   start_time_ = sim_->state().time;
   start_steps_ = sim_->state().steps;
   start_wall_ = last_checkpoint_ = clock_.seconds();

@@ -46,6 +46,7 @@ struct OutputSettings {
   double snapshot_interval = unset;  ///< [s]; unset: at the ends of stages only
   double checkpoint_interval = 60;   ///< wall time between checkpoints [s]
   bool visualisation = true;         ///< ParaView files with every snapshot
+  bool stress_fields = false;        ///< in them, the stresses in particles and necks with their parts
 };
 
 /// When a run ends before its schedule does.

@@ -129,6 +129,9 @@ void read_output(Section& root, Scene& scene) {
     section.quantity("checkpoint_interval", s.checkpoint_interval, dim::time, Range::positive(), Need::optional,
                      "time on the clock between checkpoints");
     section.flag("visualisation", s.visualisation, "files for ParaView with every snapshot");
+    section.flag(
+        "stress_fields", s.stress_fields,
+        "in these files the stress tensors of particles and the stresses in necks, sintering and viscoelastic");
   });
 }
 

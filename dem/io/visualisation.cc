@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "dem/io/atomic_file.h"
+#include "dem/measure/particle_stress.h"
 
 namespace densify::dem {
 
@@ -87,9 +88,35 @@ std::string file_name(const std::string& what, std::size_t picture) {
   return what + "_" + six_digits(picture) + ".vtp";
 }
 
+std::string particle_stress_arrays(const Snapshot& s) {
+  std::vector<float> tensor;
+  for (const Stress& t : s.stress)
+    for (const std::size_t c : {0, 1, 2, 5, 3, 4}) tensor.push_back(float(t[c]));
+  std::string arrays = data_array("stress", tensor, 6);
+  if (!s.has_necks) return arrays;
+  const auto sintering = particle_stresses(s, StressPart::sintering);
+  std::vector<float> viscoelastic;
+  for (std::size_t p = 0; p < sintering.size(); ++p)
+    viscoelastic.push_back(float(mean_stress(s.stress[p]) - mean_stress(sintering[p])));
+  return arrays + data_array("sintering_mean_stress", floats(sintering, mean_stress), 1) +
+         data_array("viscoelastic_mean_stress", viscoelastic, 1);
+}
+
+std::string neck_stress_arrays(const Snapshot& s) {
+  const std::vector<float> none(s.neck_radius.size(), std::numeric_limits<float>::quiet_NaN());
+  std::vector<float> total = none, sintering = none, viscoelastic = none;
+  for (const NeckStress& n : neck_stresses(s)) {
+    total[n.contact] = float(n.total());
+    sintering[n.contact] = float(n.sintering);
+    viscoelastic[n.contact] = float(n.viscoelastic);
+  }
+  return data_array("neck_stress", total, 1) + data_array("neck_sintering_stress", sintering, 1) +
+         data_array("neck_viscoelastic_stress", viscoelastic, 1) + data_array("phase", s.phase, 1);
+}
+
 }  // namespace
 
-void write_particles_vtp(const std::filesystem::path& path, const Snapshot& s) {
+void write_particles_vtp(const std::filesystem::path& path, const Snapshot& s, StressFields stresses) {
   const std::string n = std::to_string(s.id.size());
   std::string content = "<PointData Scalars=\"material\">\n";
   content += data_array("radius", floats(s.radius), 1);
@@ -100,6 +127,7 @@ void write_particles_vtp(const std::filesystem::path& path, const Snapshot& s) {
   content += data_array("mean_stress", floats(s.stress, mean_stress), 1);
   content += data_array("von_mises_stress", floats(s.stress, von_mises_stress), 1);
   content += data_array("coordination", s.coordination, 1);
+  if (stresses == StressFields::written) content += particle_stress_arrays(s);
   content += "</PointData>\n<Points>\n" + data_array("Points", flat(s.position), 3) + "</Points>\n";
   content += cells("Verts", s.id.size(), 1);
   write_atomically(path,
@@ -107,7 +135,7 @@ void write_particles_vtp(const std::filesystem::path& path, const Snapshot& s) {
                    Durability::kill);
 }
 
-void write_contacts_vtp(const std::filesystem::path& path, const Snapshot& s) {
+void write_contacts_vtp(const std::filesystem::path& path, const Snapshot& s, StressFields stresses) {
   std::vector<Vec3> ends;  // each line has its own, so that those across a periodic face stay short
   for (std::size_t c = 0; c < s.start.size(); ++c) {
     ends.push_back(s.start[c]);
@@ -117,6 +145,7 @@ void write_contacts_vtp(const std::filesystem::path& path, const Snapshot& s) {
   if (s.has_necks) {
     content += data_array("neck_radius", floats(s.neck_radius), 1);
     content += data_array("sintering_force", floats(s.sintering_force), 1);
+    if (stresses == StressFields::written) content += neck_stress_arrays(s);
   }
   content += "</CellData>\n<Points>\n" + data_array("Points", flat(ends), 3) + "</Points>\n";
   content += cells("Lines", s.start.size(), 2);
@@ -127,7 +156,8 @@ void write_contacts_vtp(const std::filesystem::path& path, const Snapshot& s) {
                    Durability::kill);
 }
 
-Visualisation::Visualisation(std::filesystem::path folder, std::uint64_t pictures) : folder_(std::move(folder)) {
+Visualisation::Visualisation(std::filesystem::path folder, std::uint64_t pictures, StressFields stresses)
+    : folder_(std::move(folder)), stresses_(stresses) {
   std::error_code failure;
   std::filesystem::create_directories(folder_, failure);
   if (failure) throw FileError(folder_.string() + ": cannot make this folder (" + failure.message() + ")");
@@ -153,8 +183,8 @@ void Visualisation::write_collection(const std::string& what) const {
 }
 
 void Visualisation::add(const Snapshot& snapshot) {
-  write_particles_vtp(folder_ / file_name("particles", times_.size()), snapshot);
-  write_contacts_vtp(folder_ / file_name("contacts", times_.size()), snapshot);
+  write_particles_vtp(folder_ / file_name("particles", times_.size()), snapshot, stresses_);
+  write_contacts_vtp(folder_ / file_name("contacts", times_.size()), snapshot, stresses_);
   char digits[32];
   times_.emplace_back(digits, std::to_chars(digits, digits + sizeof digits, snapshot.moment.time).ptr);
   write_collection("particles");

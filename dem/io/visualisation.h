@@ -8,20 +8,25 @@
 
 namespace densify::dem {
 
-/// Particles as points with radius, diameter, material, id, velocity, mean_stress, von_mises_stress and coordination.
-/// Throws FileError.
-void write_particles_vtp(const std::filesystem::path&, const Snapshot&);
+/// Whether files hold the stresses in particles and necks with their parts.
+enum class StressFields : std::uint8_t { left_out, written };
 
-/// Contacts as lines from centre to centre with normal_force and, with necks, neck_radius and sintering_force.
-/// Throws FileError.
-void write_contacts_vtp(const std::filesystem::path&, const Snapshot&);
+/// Particles as points with radius, diameter, material, id, velocity, mean_stress, von_mises_stress and coordination;
+/// with stress fields also stress (VTK's order xx yy zz xy yz xz) and, with necks, sintering_mean_stress and
+/// viscoelastic_mean_stress.  Throws FileError.
+void write_particles_vtp(const std::filesystem::path&, const Snapshot&, StressFields);
+
+/// Contacts as lines from centre to centre with normal_force and, with necks, neck_radius and sintering_force; with
+/// stress fields and necks also neck_stress, neck_sintering_stress and neck_viscoelastic_stress, NaN for a contact
+/// without neck, and phase.  Throws FileError.
+void write_contacts_vtp(const std::filesystem::path&, const Snapshot&, StressFields);
 
 /// The folder of all pictures of a run: particles.pvd, contacts.pvd and the files they list.
 class Visualisation {
  public:
   /// Starts pictures in a folder, which is made, or goes on after the first `pictures` of it.
   /// Throws FileError, and InputError when the collection to go on with holds fewer.
-  Visualisation(std::filesystem::path folder, std::uint64_t pictures);
+  Visualisation(std::filesystem::path folder, std::uint64_t pictures, StressFields);
 
   /// Throws FileError.
   void add(const Snapshot&);
@@ -32,6 +37,7 @@ class Visualisation {
   void write_collection(const std::string& what) const;
 
   std::filesystem::path folder_;
+  StressFields stresses_;
   std::vector<std::string> times_;  // [s], as they stand in the collection
 };
 

@@ -105,6 +105,37 @@ class ParaView(unittest.TestCase):
                 lines = contacts["Points"].reshape(-1, 2, 3)
                 np.testing.assert_allclose(lines[:, 1] - lines[:, 0], shot.branches(), rtol=0, atol=1e-19)
                 np.testing.assert_array_equal(contacts["normal_force"], shot.contacts["normal_force"].astype("f4"))
+                self.assertEqual("stress" in particles, results.complete)
+                if results.complete:
+                    self.stresses(shot, particles, contacts)
+
+    def stresses(self, shot, particles, contacts):
+        """The fields of output.stress_fields from what the snapshot holds, (6.1)-(6.8)."""
+        stress = shot.particles["stress"]
+        np.testing.assert_allclose(particles["stress"], stress[:, [0, 1, 2, 5, 3, 4]].astype("f4"), rtol=1e-6)
+        if "neck_radius" not in shot.contacts:
+            return
+        force, necked = shot.contacts["normal_force"], shot.contacts["phase"] > 0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            area = np.where(necked, np.pi * shot.contacts["neck_radius"] ** 2, np.nan)
+        np.testing.assert_array_equal(contacts["phase"], shot.contacts["phase"])
+        np.testing.assert_allclose(contacts["neck_stress"], force / area, rtol=1e-6)
+        np.testing.assert_allclose(contacts["neck_sintering_stress"], shot.contacts["sintering_force"] / area, rtol=1e-6)
+        # Only central forces: the trace of a particle's sintering stress is sum F_sint (r + u/2) over its contacts.
+        r, overlap = shot.particles["radius"], shot.contacts["overlap"]
+        mean = np.zeros(len(r))
+        for end in ("first_id", "second_id"):
+            at = shot.contacts[end]
+            distance = overlap + r[shot.contacts["first_id"]] + r[shot.contacts["second_id"]]
+            other = r[shot.contacts["first_id"]] + r[shot.contacts["second_id"]] - r[at]
+            arm = 0.5 * (distance + r[at] - other)
+            np.add.at(mean, at, shot.contacts["sintering_force"] * arm)
+        mean /= 4 * np.pi * r**3
+        scale = np.abs(mean).max()
+        np.testing.assert_allclose(particles["sintering_mean_stress"], mean, rtol=1e-5, atol=1e-6 * scale)
+        parts = particles["sintering_mean_stress"].astype(float) + particles["viscoelastic_mean_stress"]
+        whole = stress[:, :3].sum(axis=1) / 3
+        np.testing.assert_allclose(parts, whole, rtol=1e-5, atol=1e-6 * np.abs(whole).max() + 1e-6 * scale)
 
     def test_vtk_reads_them(self):
         try:

@@ -19,7 +19,8 @@ void write_results(const std::filesystem::path& folder, Setup setup, bool comple
   Simulation simulation(std::move(setup));
   auto history = HistoryFile::create(folder / "history.csv", columns);
   ResultFile results(folder, {"title = \"20 °C\"\n", "0.1.0", "abc123", columns}, 0);
-  Visualisation pictures(folder / "paraview", 0);
+  // Complete results with stress fields, the others without.
+  Visualisation pictures(folder / "paraview", 0, complete ? StressFields::written : StressFields::left_out);
   for (int output = 0; output < 3; ++output) {
     const State before = simulation.state();
     Recording recording;

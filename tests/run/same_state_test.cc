@@ -79,7 +79,8 @@ TEST(Run, OutputNeverChangesTheTrajectory) {
   for (const std::vector<std::string>& output :
        {std::vector<std::string>{"output.history_interval=1e-30 s"},
         std::vector<std::string>{"output.history_interval=1 h", "output.snapshot_interval=1 h"},
-        std::vector<std::string>{"output.snapshot_interval=10 s", "output.visualisation=true"},
+        std::vector<std::string>{"output.snapshot_interval=10 s", "output.visualisation=true",
+                                 "output.stress_fields=true"},
         std::vector<std::string>{"output.checkpoint_interval=10 ms", "title=another"}}) {
     const Scene scene = lattice(output);
     const auto place = folder / std::to_string(number++);
