@@ -22,4 +22,5 @@ configure_package_config_file(cmake/DensifyConfig.cmake.in ${PROJECT_BINARY_DIR}
   INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_DATADIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/DensifyConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/DensifyConfig.cmake ${PROJECT_BINARY_DIR}/DensifyConfigVersion.cmake
+              cmake/voro++.cmake
         DESTINATION ${package_dir})

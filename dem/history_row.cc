@@ -121,6 +121,8 @@ std::vector<HistoryColumn> history_columns(const Setup& setup) {
     tensor("sintering_stress_");
     tensor("viscoelastic_stress_");
     c.insert(c.end(), {{"mean_neck_radius_m", "m"}, {"neck_equilibrium_fraction", "1"}});
+    if (!std::isnan(setup.contact.sintering->closing_porosity))
+      c.insert(c.end(), {{"mean_local_density", "1"}, {"largest_local_density", "1"}, {"closing_neck_fraction", "1"}});
   }
   if (has_walls(setup))
     c.insert(c.end(), {{"punch_pressure_Pa", "Pa"},
@@ -160,6 +162,8 @@ std::vector<double> history_row(const Simulation& sim, const Measures& m, Histor
     add_tensor(row, m.sintering_stress);
     add_tensor(row, m.stress - m.sintering_stress);
     row.insert(row.end(), {m.mean_neck_radius, m.equilibrium_fraction});
+    if (!std::isnan(setup.contact.sintering->closing_porosity))
+      row.insert(row.end(), {m.mean_local_density, m.largest_local_density, m.closing_fraction});
   }
   if (has_walls(setup)) {
     const double area = sim.punch_area();

@@ -370,6 +370,8 @@ RunSummary Run::whole() {
   report_progress();
 
   warn_of_motion();
+  for (std::string& line : calibration_warnings(scene_, sim_->setup().container.size[0]))
+    summary_.warnings.push_back(std::move(line));
 
   const State& state = sim_->state();
   summary_.wall_seconds = clock_.seconds();

@@ -239,6 +239,25 @@ void Simulation::keep_list_fresh() {
   if (rebuilding) rebuild_lists();
 }
 
+/// Local densities, anew once the powder has moved on; in between they change with its density.
+void Simulation::measure_pores() {
+  constexpr double change = 0.1, least = 0.01;  // of the density over the porosity; porosity that still counts
+  if (!setup_.contact.sintering || std::isnan(setup_.contact.sintering->closing_porosity)) return;
+  if (state_.contacts.neck.empty()) return;
+  const PowderRoom room = powder_room(state_.particles, state_.cell, state_.walls);
+  const double density = powder_density(state_.particles, room);
+  LocalDensity& local = state_.local_density;
+  if (local.of.empty() || local.builds != state_.contacts.builds ||
+      std::abs(density / local.powder - 1) > change * std::max(least, 1 - density))
+    local = {local_densities(state_.particles, state_.cell, room, state_.contacts), density, state_.contacts.builds};
+  pore_scale_ = density / local.powder;
+}
+
+PoreClosure Simulation::pores() const {
+  if (state_.local_density.of.empty()) return {};
+  return {state_.local_density.of.data(), pore_scale_, setup_.contact.sintering->closing_porosity};
+}
+
 /// Called after a move in which no particle was faster than `fastest` against the flow of its cell [m/s, s].
 void Simulation::note_travel(double fastest, double step) {
   const double flow = state_.cell.periodic ? state_.cell.velocity_gradient.norm() : 0.0;
@@ -262,6 +281,7 @@ void Simulation::prune_near(double list_age) {
 void Simulation::compute_forces(Recording* record) {
   const PassTime clock{state_.time, state_.last_step};
   StepStiffness* const stiffness = equalised() ? &stiffness_ : nullptr;
+  pass_.set_pores(pores());
   pass_.compute(state_.particles, state_.contacts, state_.cell, table_, expansion_step_, clock,
                 record ? &record->contact : nullptr, stiffness);
   if (stress_driven()) {
@@ -294,6 +314,7 @@ void Simulation::refresh() {
   if (refreshed_) return;
   set_environment();
   keep_list_fresh();
+  measure_pores();
   refreshed_ = true;
 }
 
@@ -355,7 +376,7 @@ void Simulation::move() {
   if (moves_without_inertia()) {
     if (!state_.inertia_free) drop_inertia();
     const double longest = setup_.integration.largest_step;
-    step = inertia_free_.move(state_, setup_, table_, state_.punch.mass > 0 ? punch_wall_ : std::nullopt,
+    step = inertia_free_.move(state_, setup_, table_, pores(), state_.punch.mass > 0 ? punch_wall_ : std::nullopt,
                               std::isnan(longest) ? setup_.schedule.end() : longest);
     may_have_travelled_ = std::numeric_limits<double>::infinity();
   } else {

@@ -14,6 +14,7 @@
 #include "dem/integrate/leapfrog.h"
 #include "dem/integrate/step_control.h"
 #include "dem/integrate/time_step.h"
+#include "dem/measure/local_density.h"
 
 namespace densify::dem {
 
@@ -90,6 +91,7 @@ struct State {
   std::vector<double> active_since;  ///< of each pair of materials [s]
   ControlState control;              ///< equalised inertia only
   CellDrive cell_drive;              ///< a cell with a path only
+  LocalDensity local_density;        ///< with pore closure only
 };
 
 /// What a measure reads after a recorded pass.
@@ -158,6 +160,8 @@ class Simulation {
   bool stress_driven() const { return setup_.cell_path && setup_.cell_path->by_stress(); }
   /// Of the contacts in the last evaluation, symmetrised, tension positive; only of a stress-driven cell [Pa].
   const Mat3& cell_stress() const { return cell_stress_; }
+  /// The pores as the contacts of the last evaluation met them; without density where they do not resist.
+  PoreClosure pores() const;
   /// The load of the process now.
   ProcessLoad load() const;
   /// What drives a component of the cell now, in the order of tensor_places.
@@ -177,6 +181,7 @@ class Simulation {
  private:
   void set_environment();
   void keep_list_fresh();
+  void measure_pores();
   void compute_forces(Recording* record);
   double choose_step();
   [[noreturn]] void refuse_idle_step(double step) const;
@@ -214,6 +219,7 @@ class Simulation {
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
   Mat3 cell_stress_ = Mat3::Zero();
+  double pore_scale_ = 1;  // PoreClosure::scale
 };
 
 }  // namespace densify::dem

@@ -49,12 +49,13 @@ StepLimit Simulation::step_limit() {
     if (stress_driven()) l.critical /= 1 + carriage_share;  // room for the cell's own motion
     return l;
   };
-  if (!pass_.near().empty() && may_have_travelled_ < pass_.near().skin()) return limit({pass_.near(), pass_.chunks()});
+  if (!pass_.near().empty() && may_have_travelled_ < pass_.near().skin())
+    return limit({pass_.near(), pass_.chunks(), pores()});
   NearList all;
   all.take_all(state_.contacts);
   Chunks chunks;
   chunks.build(state_.contacts, all, state_.particles.size(), setup_.integration.threads);
-  return limit({all, chunks});
+  return limit({all, chunks, pores()});
 }
 
 void Simulation::require_stable_step() {

@@ -65,6 +65,7 @@ void ForcePass::prepare(Particles& particles, ContactList& list, const Cell& cel
                          named.material_a,
                          nullptr,
                          {friction, model_.hertz_radius == HertzRadius::equivalent, clock.step, clock.time},
+                         pores_,
                          nullptr,
                          stride,
                          0,

@@ -48,6 +48,9 @@ class ForcePass {
   /// cell.  Right after compute(), before other forces are added. [N m]
   Mat3 virial(const Particles&, const Cell&) const;
 
+  /// What the contacts of the next passes meet.
+  void set_pores(const PoreClosure& pores) { pores_ = pores; }
+
   /// To be called after every rebuild of the list; the next passes visit all its pairs until near() is pruned.
   void list_changed(const ContactList&, std::size_t particles);
 
@@ -79,6 +82,7 @@ class ForcePass {
   ContactModel model_;
   int threads_;
   bool images_apart_ = false;
+  PoreClosure pores_;
   const KernelTable* kernels_;
   NearList near_;
   Chunks chunks_;

@@ -47,6 +47,17 @@ inline void growth_rates(const KernelJob& job, const Block& block, Numbers& of_i
   }
 }
 
+/// Of its flow that closing pores leave to each contact.
+inline Numbers flow_shares(const KernelJob& job, const Block& block) {
+  const double* const density = job.pores.density;
+  Numbers of_i, of_j;
+  for (int l = 0; l < width; ++l) {
+    of_i.v[l] = density[job.first_particle + block.offset_i[l] / 8];
+    of_j.v[l] = density[job.second[block.place[l]] & index_mask];
+  }
+  return flow_share(0.5 * job.pores.scale * (of_i + of_j), job.pores.onset);
+}
+
 /// Radius, displacement and phase of each neck.
 struct Necks {
   Columns<width> column;
@@ -139,7 +150,7 @@ inline void write_records(const Law& law, const KernelJob& job, const Block& blo
   }
 }
 
-/// `plain`: no growth, no deforming cell, no stiffness sums, no record.
+/// `plain`: no growth, no deforming cell, no closing pores, no stiffness sums, no record.
 template <class Law, bool friction, bool plain>
 inline void act(const Law& law, const KernelJob& job, const Block& block, const Place& found, Result& result) {
   PairOf<Numbers> pair;
@@ -160,6 +171,7 @@ inline void act(const Law& law, const KernelJob& job, const Block& block, const 
     pair.radius_j = pair.reach - pair.radius_i;
   }
   FrameOf<Numbers> frame = frame_of(law, job.uniform, pair, d2);
+  if (!plain && has_necks<Law> && job.pores.density) frame.in.flow_share = flow_shares(job, block);
   if (!plain && job.growing) {
     Numbers of_i, of_j, growth;
     growth_rates(job, block, of_i, of_j);
@@ -340,7 +352,7 @@ template <class Law, bool friction, bool plain>
 
 template <class Law, bool friction>
 void run(const KernelJob& job, std::size_t begin, std::size_t end) {
-  if (job.gradient || job.growing || job.next_step > 0 || job.record)
+  if (job.gradient || job.growing || job.pores.density || job.next_step > 0 || job.record)
     run_pairs<Law, friction, false>(job, begin, end);
   else
     run_pairs<Law, friction, true>(job, begin, end);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dem/contact/pair_force.h"
+#include "dem/law/pore_closure.h"
 
 namespace densify::dem {
 
@@ -40,6 +41,7 @@ struct KernelJob {
   std::uint8_t material_a;
   const void* law;
   PairUniform uniform;
+  PoreClosure pores;
   // Sums of the chunk, `stride` doubles a particle: force and 0; with friction torque and 0; with next_step > 0 what
   // StiffnessSum holds and 0.  Its own particles first, then others.
   double* sums;

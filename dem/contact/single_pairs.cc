@@ -71,6 +71,7 @@ void pair(const KernelJob& job, std::size_t near, Given& given) {
   pair.velocity = triple(b + 4) - triple(a + 4);
   if (job.gradient) add_flow(pair, job.gradient);
   FrameOf<double> frame = frame_of(law, job.uniform, pair, d2);
+  frame.in.flow_share = job.pores.share(i, j);
   if (job.growing) {
     const bool swapped = job.material[i] != job.material_a;
     frame.in.rate -=

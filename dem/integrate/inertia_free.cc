@@ -59,7 +59,7 @@ double coefficient(const Law& law, const NeckHistory* neck, const StepContact& c
   double slope = std::max(0.0, (force - force_at_end(law, neck, nearer, rate - change).total) / change);
   if constexpr (has_necks<Law>)
     if (Law::flows(neck->phase)) {
-      const double eta = young * law.viscosity(young_neck * in.sintering_radius);
+      const double eta = young * law.viscosity(in, young_neck * in.sintering_radius);
       const double k = law.loose.spring.tangent(neck->elastic, in.elastic_radius);
       const double least = law.settings.model == SinteringModel::viscous ? eta : k * in.step / (1 + k * in.step / eta);
       slope = std::max(slope, least);
@@ -146,7 +146,7 @@ void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t) {
   double squares = external_.squaredNorm();
   const bool deforming = s.cell.periodic && !s.cell.velocity_gradient.isZero(0);
   const double lateral_share = setup.integration.inertia_free.tangential_share;
-  const ContactWorld world{ahead_, s.contacts, cell_ahead_, *table_, setup.contact, walls_ahead_};
+  const ContactWorld world{ahead_, s.contacts, cell_ahead_, *table_, setup.contact, walls_ahead_, pores_};
   visit_contacts(world, 0, [&](const ContactView& view, const auto& law, const NeckHistory* neck) {
     NetworkLink link{view.normal, 0, 0, view.i, view.j, End::particle};
     StepContact c{view.input, 0};
@@ -247,8 +247,9 @@ void InertiaFree::apply(State& s, const Trial& t) const {
   }
 }
 
-double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, std::optional<std::size_t> guided,
-                         double longest) {
+double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, const PoreClosure& pores,
+                         std::optional<std::size_t> guided, double longest) {
+  pores_ = pores;
   const InertiaFreeSettings& settings = setup.integration.inertia_free;
   network_ = NetworkOperator(s.particles.size(), guided ? std::optional(Vec3(Vec3::UnitZ())) : std::nullopt);
   network_.reserve(s.contacts.size() + s.walls.contacts().size());

@@ -47,7 +47,8 @@ class InertiaFree {
   /// one.  h keeps (h/2) mean |v - v_before| of the contacts below step_tolerance x mean radius, which estimates
   /// backward Euler's error; a mean, because a contact that snaps moves at once however short the step is. Throws
   /// RunError when no step balances the forces.
-  double move(State&, const Setup&, const PairTable&, std::optional<std::size_t> guided, double longest);
+  double move(State&, const Setup&, const PairTable&, const PoreClosure&, std::optional<std::size_t> guided,
+              double longest);
 
   const InertiaFreeCount& count() const { return count_; }
   std::size_t bytes() const;
@@ -67,6 +68,7 @@ class InertiaFree {
   Cell cell_ahead_;
   Walls walls_ahead_;
   std::optional<PairTable> table_;  // at the end of the step
+  PoreClosure pores_;               // at its start
   std::vector<double> growth_;      // relative, of each material over the step
   Eigen::VectorXd external_;        // forces from outside at the end of the step [N]
   Eigen::VectorXd inertia_;         // M/h of every row [N s/m]

@@ -83,6 +83,7 @@ double add_pairs(const Law& law, const Pass& pass, std::size_t begin, std::size_
     in.reduced_mass = 1 / (a.inverse_mass + b.inverse_mass);
     in.step = 0;
     in.time = pass.time;
+    in.flow_share = pass.pairs.pores.share(list.i(k), list.j(k));
     Linearisation l;
     if constexpr (has_necks<Law>)
       l = law.linearise(in, list.neck[k]);

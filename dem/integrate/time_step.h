@@ -43,10 +43,11 @@ struct PunchNode {
   std::size_t wall = 0;
 };
 
-/// The pairs of a contact list that may touch now, and the chunks in which a pass sums them up.
+/// The pairs of a contact list that may touch now, the chunks in which a pass sums them up, and their pores.
 struct PassPairs {
   const NearList& near;
   const Chunks& chunks;
+  PoreClosure pores;
 };
 
 /// The limit of all particles and of the punch; the same bits for every number of threads.

@@ -20,6 +20,25 @@ void read_diffusion_keys(Section& section, GrainBoundaryDiffusion& diffusion) {
                    Need::optional, "delta of the grain boundary (4.81)");
 }
 
+namespace {
+
+void read_calibration(Section& section, Calibration& calibration) {
+  using Shape = std::optional<ContainerShape>;
+  section.choice("calibrated_on", calibration.shape,
+                 {{"cylinder", Shape(ContainerShape::cylinder)},
+                  {"box", Shape(ContainerShape::box)},
+                  {"periodic", Shape(ContainerShape::periodic)},
+                  {"free", Shape(ContainerShape::free)}},
+                 Need::optional,
+                 "shape of the specimen whose densities the diffusion was fitted to; says nothing if absent");
+  section.quantity("calibrated_size", calibration.size, dim::length, Range::positive(), Need::optional,
+                   "diameter or edge of that specimen");
+  if (!calibration.shape && section.has("calibrated_size"))
+    section.fail("calibrated_size", "is the size of a specimen of no shape; give calibrated_on");
+}
+
+}  // namespace
+
 void read_material_keys(Section& section, MaterialCard& card) {
   Material& m = card.material;
   section.quantity("density", m.density, dim::density, Range::positive(), Need::optional,
@@ -31,6 +50,9 @@ void read_material_keys(Section& section, MaterialCard& card) {
   section.table("poissons_ratio", m.poissons_ratio, dim::temperature, dim::none, Range::inside(-1.0, 0.5),
                 Need::optional, "nu over temperature (4.20)");
   read_diffusion_keys(section, m.diffusion);
+  // Other diffusion than the library's is another set of parameters.
+  if (section.has("diffusion_prefactor") || section.has("activation_enthalpy")) card.calibration = {};
+  read_calibration(section, card.calibration);
   section.quantity("surface_energy", m.surface_energy, dim::surface_energy, Range::non_negative(), Need::optional,
                    "gamma_s of the sintering force (4.36)");
   section.quantity("dihedral_angle", m.dihedral_angle, dim::angle, Range::inside(0.0, std::numbers::pi), Need::optional,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dem/material/material.h"
+#include "dem/simulation.h"
 
 namespace densify {
 class Section;
@@ -13,9 +14,16 @@ class Section;
 
 namespace densify::dem {
 
+/// The kind of specimen whose measured densities a material's diffusion was fitted to.
+struct Calibration {
+  std::optional<ContainerShape> shape;  ///< none: not fitted, or nobody says
+  double size = unset;                  ///< diameter of the cylinder, or edge of box or cell [m]
+};
+
 /// A material as a file or a scene states it.
 struct MaterialCard {
   Material material;
+  Calibration calibration;
   double melting_temperature = unset;  ///< [K]; only sets the default of the activation temperature
 };
 

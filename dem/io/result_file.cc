@@ -21,6 +21,7 @@ void write_particles(Hdf5Writer& file, const std::string& group, const Snapshot&
   file.table(group + "/stress", stress, 6, "Pa");
   file.attribute(group + "/stress", "components", "xx yy zz yz xz xy");
   file.list(group + "/coordination", s.coordination, "");
+  if (!s.local_density.empty()) file.list(group + "/local_density", s.local_density, "1");
 }
 
 void write_contacts(Hdf5Writer& file, const std::string& group, const Snapshot& s) {
@@ -38,6 +39,7 @@ void write_contacts(Hdf5Writer& file, const std::string& group, const Snapshot& 
   file.list(group + "/phase", s.phase, "");
   file.attribute(group + "/phase", "values",
                  "0 loose, 1 activating, 2 sintering, 3 arriving, 4 bonded, 5 deactivating, 6 dormant, 7 reactivating");
+  if (!s.flow_share.empty()) file.list(group + "/flow_share", s.flow_share, "1");
 }
 
 void write_walls(Hdf5Writer& file, const std::string& group, const Snapshot& s) {

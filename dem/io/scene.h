@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dem/io/material_library.h"
 #include "dem/powder/powder.h"
 #include "dem/simulation.h"
 
@@ -55,6 +56,7 @@ enum class StopWhen : std::uint8_t { schedule_ends, all_necks_at_equilibrium };
 struct Scene {
   std::string title;
   std::vector<Material> materials;
+  std::vector<Calibration> calibrations;  ///< of the materials
   std::vector<Interface> interfaces;
   ContactModel contact;
   Container container;  ///< with a powder: size has the base (periodic: its proportions), height from the packing
@@ -81,6 +83,10 @@ struct Scene {
   /// The message with the place in front when it begins with such a key.
   std::string placed(const std::string& message) const;
 };
+
+/// A line for each material whose diffusion was fitted to another kind of specimen than that of the scene, of the given
+/// diameter or edge [m]; none for a scene without sintering.
+std::vector<std::string> calibration_warnings(const Scene&, double size);
 
 /// Reads and checks a scene (a file, or a folder that holds scene.toml); overrides are "path.to.key=value".
 /// Throws InputError with file, line and key; FileError when the file or the shipped materials cannot be read.

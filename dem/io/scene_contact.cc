@@ -42,6 +42,12 @@ void read_sintering(Section& section, SinteringSettings& s) {
                    "smallest neck radius over particle radius");
   section.quantity("tension_floor", s.tension_floor, dim::none, Range::inside(0.0, 1.0), Need::optional,
                    "Hertz (4.46) in tension is linear, with the tangent at this overlap over radius");
+  section.section("pore_closure", Need::optional, "the last pores resist; they never do if absent",
+                  [&](Section& below) {
+                    s.closing_porosity = 0.1;
+                    below.quantity("porosity", s.closing_porosity, dim::none, Range::inside(0.0, 1.0), Need::optional,
+                                   "local porosity below which a contact's viscosity grows as 1/porosity");
+                  });
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // [materials.NAME] and [[interface]].
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 
@@ -22,7 +24,47 @@ MaterialCard from_library(const Section& section, const std::string& library) {
   return library_material(library);
 }
 
+std::string micrometres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g um", 1e6 * length);
+  return text;
+}
+
+const char* name_of(ContainerShape shape) {
+  switch (shape) {
+    case ContainerShape::cylinder:
+      return "cylinder";
+    case ContainerShape::box:
+      return "box";
+    case ContainerShape::periodic:
+      return "periodic";
+    default:
+      return "free";
+  }
+}
+
 }  // namespace
+
+std::vector<std::string> calibration_warnings(const Scene& scene, double size) {
+  constexpr double alike = 1.5;  // ratio of sizes up to which a wall layer counts the same
+  std::vector<std::string> lines;
+  if (!scene.contact.sintering) return lines;
+  for (std::size_t m = 0; m < scene.calibrations.size(); ++m) {
+    const Calibration& c = scene.calibrations[m];
+    if (!c.shape) continue;
+    const bool sizes = *c.shape != ContainerShape::free && std::isfinite(c.size) && size > 0;
+    const bool same_size = !sizes || (size <= alike * c.size && c.size <= alike * size);
+    if (*c.shape == scene.container.shape && same_size) continue;
+    const auto specimen = [&](ContainerShape shape, double of) {
+      const bool sized = shape != ContainerShape::free && std::isfinite(of) && of > 0;
+      return std::string("shape \"") + name_of(shape) + "\"" + (sized ? " of " + micrometres(of) : "");
+    };
+    lines.push_back("the diffusion of " + scene.materials[m].name + " was fitted to densities of a specimen of " +
+                    specimen(*c.shape, c.size) + ", and this is one of " + specimen(scene.container.shape, size) +
+                    ": its densities may be off (doc/theory.md, 14); fit it to a specimen of this kind");
+  }
+  return lines;
+}
 
 void read_materials(Section& root, Scene& scene, ScenePlaces& places) {
   root.named_list("materials", Need::required, "materials of the powder", [&](Section& section, std::string name) {
@@ -36,6 +78,7 @@ void read_materials(Section& root, Scene& scene, ScenePlaces& places) {
     constexpr std::size_t most = std::numeric_limits<std::uint8_t>::max();
     if (scene.materials.size() == most) section.fail("", "too many materials; at most 255 are possible");
     scene.materials.push_back(card.material);
+    scene.calibrations.push_back(card.calibration);
     places.materials.push_back(section);
   });
 }

@@ -15,7 +15,7 @@ Vec3 branch_of(const State& s, std::size_t k) {
   return s.cell.periodic ? Vec3(between + s.cell.shift(s.contacts.image(k))) : between;
 }
 
-void take_particles(Snapshot& shot, const State& s, const Recording& recording) {
+void take_particles(Snapshot& shot, const State& s, const PoreClosure& pores, const Recording& recording) {
   const Particles& p = s.particles;
   std::vector<std::uint32_t> order(p.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -31,10 +31,11 @@ void take_particles(Snapshot& shot, const State& s, const Recording& recording) 
     shot.velocity.push_back(p.body[q].velocity);
     if (shot.has_friction) shot.angular_velocity.push_back(p.angular_velocity[q]);
     shot.coordination.push_back(coordination[q]);
+    if (pores.density) shot.local_density.push_back(pores.scale * pores.density[q]);
   }
 }
 
-void take_contacts(Snapshot& shot, const State& s, const Recording& recording) {
+void take_contacts(Snapshot& shot, const State& s, const PoreClosure& pores, const Recording& recording) {
   const ContactList& list = s.contacts;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const ContactRecord& record = recording.contact[k];
@@ -56,6 +57,7 @@ void take_contacts(Snapshot& shot, const State& s, const Recording& recording) {
     shot.elastic_displacement.push_back(list.neck[k].elastic);
     shot.since.push_back(list.neck[k].since);
     shot.phase.push_back(std::uint8_t(list.neck[k].phase));
+    if (pores.density) shot.flow_share.push_back(pores.share(list.i(k), list.j(k)));
   }
 }
 
@@ -79,8 +81,8 @@ Snapshot take_snapshot(const Simulation& simulation, const Recording& recording,
   for (const auto& m : simulation.setup().materials) shot.materials.push_back(m.name);
   shot.has_friction = !s.particles.angular_velocity.empty();
   shot.has_necks = !s.contacts.neck.empty();
-  take_particles(shot, s, recording);
-  take_contacts(shot, s, recording);
+  take_particles(shot, s, simulation.pores(), recording);
+  take_contacts(shot, s, simulation.pores(), recording);
   take_walls(shot, s, recording);
   shot.cell = s.cell;
   shot.stress = particle_stresses(shot, StressPart::total);

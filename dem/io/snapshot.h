@@ -32,6 +32,7 @@ struct Snapshot {
   std::vector<Vec3> angular_velocity;       ///< only with friction [rad/s]
   std::vector<Stress> stress;               ///< total particle stress (6.5, 6.6) [Pa]
   std::vector<std::uint32_t> coordination;  ///< contacts with other particles
+  std::vector<double> local_density;        ///< only with pore closure and necks
 
   // Contacts that transmit force now: touching, or joined by a neck.
   std::vector<std::uint32_t> first_id, second_id;
@@ -45,6 +46,7 @@ struct Snapshot {
   std::vector<double> elastic_displacement;  ///< u_e; only with necks [m]
   std::vector<double> since;                 ///< begin of the neck's last transition; only with necks [s]
   std::vector<std::uint8_t> phase;           ///< NeckPhase; only with necks
+  std::vector<double> flow_share;            ///< that closing pores leave; only with pore closure and necks
 
   std::vector<Wall> wall;
   std::vector<Vec3> wall_force;  ///< of the powder on each wall [N]

@@ -239,6 +239,11 @@ void write_state(Hdf5Writer& file, const State& state) {
     file.list("/state/cell_deformation", flat(d.deformation), "1");
     file.attribute("/state", "cell_stage", d.stage);
   }
+  if (const LocalDensity& l = state.local_density; !l.of.empty()) {
+    file.list("/state/local_density", l.of, "1");
+    file.list<double>("/state/local_density_of_powder", {l.powder}, "1");
+    file.attribute("/state", "local_density_builds", l.builds);
+  }
   file.attribute("/state", "steps", state.steps);
   file.attribute("/state", "inertia_free", std::uint64_t(state.inertia_free));
 }
@@ -254,6 +259,17 @@ CellDrive read_cell_drive(const Hdf5Reader& file) {
   d.stage = file.attribute<std::uint64_t>("/state", "cell_stage");
   d.deformation = read_matrix(file, "/state/cell_deformation");
   return d;
+}
+
+}  // namespace
+
+namespace {
+
+LocalDensity read_local_density(const Hdf5Reader& file, std::size_t particles) {
+  if (!file.has("/state/local_density")) return {};
+  return {read_list<double>(file, "/state/local_density", particles),
+          read_list<double>(file, "/state/local_density_of_powder", 1)[0],
+          file.attribute<std::uint64_t>("/state", "local_density_builds")};
 }
 
 }  // namespace
@@ -284,6 +300,7 @@ State read_state(const Hdf5Reader& file, const Simulation& simulation) {
   s.cell.origin = read_vector(file, "/state/cell_origin");
   s.cell.velocity_gradient = read_matrix(file, "/state/cell_velocity_gradient");
   s.cell_drive = read_cell_drive(file);
+  s.local_density = read_local_density(file, s.particles.size());
   s.expansion = read_list<double>(file, "/state/expansion", now.expansion.size());
   s.active_since = read_list<double>(file, "/state/active_since", now.active_since.size());
   const auto clock = read_list<double>(file, "/state/clock", 5);

@@ -78,6 +78,7 @@ void read_particles(const Rows& rows, Snapshot& s) {
   if (s.has_friction) s.angular_velocity = rows.vectors("angular_velocity");
   s.stress = rows.stresses("stress");
   s.coordination = rows.list<std::uint32_t>("coordination");
+  if (rows.has("local_density")) s.local_density = rows.list<double>("local_density");
 }
 
 void read_contacts(const Rows& rows, Snapshot& s) {
@@ -107,6 +108,7 @@ void read_contacts(const Rows& rows, Snapshot& s) {
   s.phase = rows.list<std::uint8_t>("phase");
   for (const auto p : s.phase)
     if (p > std::uint8_t(NeckPhase::reactivating)) rows.refuse("phase", "a number without a phase");
+  if (rows.has("flow_share")) s.flow_share = rows.list<double>("flow_share");
 }
 
 void read_walls(const Rows& rows, const Hdf5Reader& file, const std::string& group, Snapshot& s) {

@@ -33,11 +33,12 @@ struct SinteringSettings {
   NeckGrowth neck = NeckGrowth::integrated;
   MaxwellUpdate update = MaxwellUpdate::backward_euler;
   AtEquilibrium at_equilibrium = AtEquilibrium::elastic_bond;
-  double relaxation_time = 60;     ///< t_rel of the cosine transitions (4.47-4.54) [s]
-  double viscosity_before = 1e12;  ///< eta_inf (4.47) [N s/m]
-  double damping_ratio = 0.1;      ///< of the critical damping, acting on the elastic part of the rate only
-  double starting_neck = 0.01;     ///< smallest neck radius over particle radius
-  double tension_floor = 3e-4;     ///< Hertz in tension is linear with the tangent at this overlap over radius
+  double relaxation_time = 60;      ///< t_rel of the cosine transitions (4.47-4.54) [s]
+  double viscosity_before = 1e12;   ///< eta_inf (4.47) [N s/m]
+  double damping_ratio = 0.1;       ///< of the critical damping, acting on the elastic part of the rate only
+  double starting_neck = 0.01;      ///< smallest neck radius over particle radius
+  double tension_floor = 3e-4;      ///< Hertz in tension is linear with the tangent at this overlap over radius
+  double closing_porosity = unset;  ///< local porosity from which on the last pores resist; unset: they never do
 };
 
 struct ContactModel {

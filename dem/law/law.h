@@ -15,6 +15,7 @@ struct NormalInputOf {
   T reduced_mass;      ///< m_i m_j / (m_i + m_j), scaled masses [kg]
   double step;         ///< time since the last update, 0 at the first [s]
   double time;         ///< process time [s]
+  T flow_share = 1.0;  ///< of the neck's viscous flow, that closing pores leave to it
 };
 using NormalInput = NormalInputOf<double>;
 

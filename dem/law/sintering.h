@@ -70,6 +70,11 @@ struct SinteringContact {
   T viscosity(const T& a) const {
     return (a * a) * (a * a) / mobility_factor;
   }
+  /// The same of a contact whose pores may resist.
+  template <class T>
+  T viscosity(const NormalInputOf<T>& in, const T& a) const {
+    return (a * a) * (a * a) / (mobility_factor * in.flow_share);
+  }
 
   /// F_sint = pi gamma (4 r (1 - cos(Psi/2)) + a sin(Psi/2)) (4.36) [N].
   template <class T>
@@ -148,16 +153,16 @@ struct SinteringContact {
       after.radius = select(phase.sintering, grown, neck.radius);
       middle = 0.5 * (neck.radius + after.radius);  // of the step (4.57)
       f_sint = select(phase.sintering, sintering_force(middle, in.sintering_radius), T(0.0));
-      flow.mobility = select(phase.sintering, T(mobility_factor), flow.mobility);
+      flow.mobility = select(phase.sintering, mobility_factor * in.flow_share, flow.mobility);
       flow.per = select(phase.sintering, (middle * middle) * (middle * middle), flow.per);
     }
     if (settings.at_equilibrium == AtEquilibrium::viscous && any(phase.bonded)) {
-      flow.mobility = select(phase.bonded, T(1.0), flow.mobility);
+      flow.mobility = select(phase.bonded, in.flow_share, flow.mobility);
       flow.per = select(phase.bonded, larger(T(settings.viscosity_before), viscosity(middle)), flow.per);
     }
     NormalForceOf<T> g = relax(in, flow, f_sint, after.elastic);
     if (settings.model == SinteringModel::viscous && any(phase.sintering)) {
-      g.total = select(phase.sintering, viscosity(middle) * in.rate + f_sint, g.total);
+      g.total = select(phase.sintering, viscosity(in, middle) * in.rate + f_sint, g.total);
       after.elastic = select(phase.sintering, neck.elastic, after.elastic);
     }
     f.total = select(necked, g.total, f.total);
@@ -175,8 +180,8 @@ struct SinteringContact {
     const bool soft =
         h.phase == NeckPhase::sintering || h.phase == NeckPhase::activating || h.phase == NeckPhase::reactivating;
     const auto flow = [&](double a2) {
-      if (h.phase == NeckPhase::sintering) return Flow<double>{mobility_factor, a2 * a2};
-      return flow_of(series_viscosity(h.phase, std::sqrt(a2), activity(h, in.time)));
+      if (h.phase == NeckPhase::sintering) return Flow<double>{mobility_factor * in.flow_share, a2 * a2};
+      return flow_of(series_viscosity(in, h.phase, std::sqrt(a2), activity(h, in.time)));
     };
     return step_stiffness(in, NeckOf<double>{h.radius, h.elastic}, h.phase == NeckPhase::loose, soft, flow, next_step);
   }
@@ -188,7 +193,7 @@ struct SinteringContact {
     return step_stiffness(
         in, neck, phase.loose, phase.sintering,
         [&](const T& a2) {
-          return Flow<T>{mobility_factor, a2 * a2};
+          return Flow<T>{mobility_factor * in.flow_share, a2 * a2};
         },
         next_step);
   }
@@ -199,9 +204,9 @@ struct SinteringContact {
     const double k = loose.spring.tangent(h.elastic, in.elastic_radius);
     const double active_force = share > 0 ? share * sintering_force(h.radius, in.sintering_radius) : 0;
     if (settings.model == SinteringModel::viscous && flows(h.phase) && h.phase != NeckPhase::arriving)
-      return {std::numeric_limits<double>::infinity(), 0, viscosity(h.radius), active_force,
-              viscosity(h.radius) * in.rate};
-    return {k, damper(in, k), series_viscosity(h.phase, h.radius, share), active_force,
+      return {std::numeric_limits<double>::infinity(), 0, viscosity(in, h.radius), active_force,
+              viscosity(in, h.radius) * in.rate};
+    return {k, damper(in, k), series_viscosity(in, h.phase, h.radius, share), active_force,
             loose.spring.force(h.elastic, in.elastic_radius)};
   }
 
@@ -238,7 +243,8 @@ struct SinteringContact {
         a2 = neck.radius * neck.radius + 2 * in.sintering_radius * approach;
       }
       if (settings.model == SinteringModel::viscous) {
-        stiffness = select(soft, larger(stiffness, (2 / (next_step * mobility_factor)) * (a2 * a2)), stiffness);
+        stiffness = select(soft, larger(stiffness, (2 / (next_step * (mobility_factor * in.flow_share))) * (a2 * a2)),
+                           stiffness);
       } else if (settings.update != MaxwellUpdate::trapezoidal) {
         const T largest = largest_neck(in);
         const Flow<T> f = flow(a2);
@@ -272,7 +278,7 @@ struct SinteringContact {
       begin(in, h);
       const double share = activity(h, in.time);
       const double f_sint = share > 0 ? share * sintering_force(h.radius, in.sintering_radius) : 0;
-      const double f = settings.model == SinteringModel::viscous ? viscosity(h.radius) * in.rate
+      const double f = settings.model == SinteringModel::viscous ? viscosity(in, h.radius) * in.rate
                                                                  : loose.spring.force(h.elastic, in.elastic_radius);
       return {f + f_sint, f_sint};
     }
@@ -290,9 +296,9 @@ struct SinteringContact {
     const double share = activity(h, in.time);
     const double f_sint = share > 0 ? share * sintering_force(neck, in.sintering_radius) : 0;
     if (settings.model == SinteringModel::viscous && flows(h.phase) && h.phase != NeckPhase::arriving)
-      return {viscosity(neck) * in.rate + f_sint, f_sint};
-    Flow<double> flow{mobility_factor, (neck * neck) * (neck * neck)};
-    if (h.phase != NeckPhase::sintering) flow = flow_of(series_viscosity(h.phase, neck, share));
+      return {viscosity(in, neck) * in.rate + f_sint, f_sint};
+    Flow<double> flow{mobility_factor * in.flow_share, (neck * neck) * (neck * neck)};
+    if (h.phase != NeckPhase::sintering) flow = flow_of(series_viscosity(in, h.phase, neck, share));
     return relax(in, flow, f_sint, h.elastic);
   }
 
@@ -312,7 +318,12 @@ struct SinteringContact {
     return 2 * settings.damping_ratio * root(in.reduced_mass * k);
   }
 
-  /// Dashpot in series with the spring (4.47, 4.51); eta_inf is never below the theory's viscosity.
+  /// Dashpot in series with the spring (4.47, 4.51), behind closing pores.
+  double series_viscosity(const NormalInput& in, NeckPhase phase, double a, double share) const {
+    return series_viscosity(phase, a, share) / in.flow_share;
+  }
+
+  /// Without pores; eta_inf is never below the theory's viscosity.
   double series_viscosity(NeckPhase phase, double a, double share) const {
     const double theory = viscosity(a);
     const double before = std::max(settings.viscosity_before, theory);
@@ -397,7 +408,7 @@ struct SinteringContact {
   }
 
   void bond_takes_over(const NormalInput& in, NeckHistory& h, double sintering) const {
-    h.elastic = loose.spring.displacement(viscosity(h.radius) * in.rate + sintering, in.elastic_radius);
+    h.elastic = loose.spring.displacement(viscosity(in, h.radius) * in.rate + sintering, in.elastic_radius);
   }
 
   void reach_equilibrium(const NormalInput& in, NeckHistory& h) const {

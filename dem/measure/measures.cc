@@ -25,6 +25,24 @@ void measure_necks(const State& s, Measures& m) {
   m.equilibrium_fraction = double(at_equilibrium) / double(necks);
 }
 
+void measure_pores(const State& s, const PoreClosure& pores, Measures& m) {
+  if (!pores.density) return;
+  double sum = 0, largest = 0;
+  for (const double density : s.local_density.of) {
+    sum += density;
+    largest = std::max(largest, density);
+  }
+  m.mean_local_density = pores.scale * sum / double(s.particles.size());
+  m.largest_local_density = pores.scale * largest;
+  std::size_t necks = 0, closing = 0;
+  for (std::size_t k = 0; k < s.contacts.neck.size(); ++k) {
+    if (s.contacts.neck[k].phase == NeckPhase::loose) continue;
+    ++necks;
+    closing += pores.share(s.contacts.i(k), s.contacts.j(k)) < 1;
+  }
+  if (necks > 0) m.closing_fraction = double(closing) / double(necks);
+}
+
 void measure_walls(const Simulation& sim, Measures& m) {
   const State& s = sim.state();
   const auto& normal = s.walls.normal_force();
@@ -55,6 +73,7 @@ Measures measure(const Simulation& sim, const Recording& recording) {
   m.relative_density = relative_density(sim, m.envelope);
   m.relative_density_inner = inner_relative_density(sim, 2 * mean_diameter(sim));
   measure_necks(s, m);
+  measure_pores(s, sim.pores(), m);
   measure_walls(sim, m);
 
   double contact_force = 0, damping = 0, power = 0;

@@ -12,6 +12,9 @@ struct Measures {
   double coordination_number = 0;     ///< touching or necked neighbours (walls not counted), mean
   double mean_neck_radius = 0;        ///< over the necks [m]
   double equilibrium_fraction = 0;    ///< necks at equilibrium over all necks
+  double mean_local_density = unset;  ///< of the particles; with pore closure and necks only, as the next two
+  double largest_local_density = unset;
+  double closing_fraction = unset;  ///< necks that closing pores resist over all necks
   Mat3 stress = Mat3::Zero();  ///< (6.10), (1/V) sum of F (x) L over contacts and walls, F on i, L from i to j or from
                                ///< centre to wall; symmetrised, tension positive [Pa]
   Mat3 sintering_stress = Mat3::Zero();  ///< share of F_sint, affine (6.10) [Pa]

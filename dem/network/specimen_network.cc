@@ -58,12 +58,13 @@ Region inner_region(const Hdf5Reader& file, const std::string& walls, double dis
 
 /// The law of a pair, linearised at rest.
 Linearisation linearise(const Scene& scene, const PairTable& table, const Particles& p, std::uint32_t i,
-                        std::uint32_t j, double overlap, const NeckHistory* neck, double time) {
+                        std::uint32_t j, double overlap, const NeckHistory* neck, double flow_share, double time) {
   const double ri = p.body[i].radius, rj = p.body[j].radius;
   NormalInput in;
   in.overlap = overlap;
   in.rate = in.step = 0;
   in.time = time;
+  in.flow_share = flow_share;
   in.elastic_radius = elastic_radius(scene.contact, ri, rj);
   in.sintering_radius = neck ? sintering_radius(scene.contact.sintering->radius, ri, rj) : 0.0;
   in.reduced_mass = 1 / (p.body[i].inverse_mass + p.body[j].inverse_mass);
@@ -159,7 +160,7 @@ SpecimenNetwork read_network(const Hdf5Reader& file, const Scene& scene, const S
   const auto first = file.read<std::uint32_t>(contacts + "/first_id"),
              second = file.read<std::uint32_t>(contacts + "/second_id");
   std::vector<std::uint8_t> image, phase;
-  std::vector<double> neck_radius, elastic, since;
+  std::vector<double> neck_radius, elastic, since, flow_share(first.size(), 1.0);
   if (s.cell.periodic) image = file.read<std::uint8_t>(contacts + "/image");
   const bool necks = file.has(contacts + "/neck_radius");
   if (necks) {
@@ -169,6 +170,7 @@ SpecimenNetwork read_network(const Hdf5Reader& file, const Scene& scene, const S
     // Results of before have no begin of transitions: taken as ended.
     since.assign(first.size(), -std::numeric_limits<double>::infinity());
     if (file.has(contacts + "/since")) since = file.read<double>(contacts + "/since");
+    if (file.has(contacts + "/flow_share")) flow_share = file.read<double>(contacts + "/flow_share");
   }
   for (std::size_t k = 0; k < first.size(); ++k) {
     if (first[k] >= of_id.size() || second[k] >= of_id.size() || of_id[first[k]] == outside ||
@@ -188,7 +190,7 @@ SpecimenNetwork read_network(const Hdf5Reader& file, const Scene& scene, const S
       neck = {neck_radius[k], elastic[k], since[k], NeckPhase(phase[k])};
       if (neck.phase != NeckPhase::loose) e.neck_radius = neck.radius;
     }
-    e.law = linearise(scene, table, all, i, j, e.overlap, necks ? &neck : nullptr, s.time);
+    e.law = linearise(scene, table, all, i, j, e.overlap, necks ? &neck : nullptr, flow_share[k], s.time);
     if (e.at_wall) {  // half of the contact, up to its plane
       e.branch = e.lever * e.normal;
       e.law.stiffness *= 2, e.law.damper *= 2, e.law.viscosity *= 2;
@@ -210,9 +212,9 @@ SpecimenNetwork network_of(const Simulation& simulation) {
   s.temperature = simulation.temperature();
   s.cell = state.cell;
   s.volume = s.cell.volume();
-  s.network = build_network(
-      {state.particles, state.contacts, state.cell, simulation.table(), simulation.setup().contact, state.walls},
-      state.time);
+  s.network = build_network({state.particles, state.contacts, state.cell, simulation.table(),
+                             simulation.setup().contact, state.walls, simulation.pores()},
+                            state.time);
   double solid = 0;
   for (const auto& b : state.particles.body) {
     s.position.push_back(b.position);

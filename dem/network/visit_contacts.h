@@ -13,6 +13,7 @@ struct ContactWorld {
   const PairTable& table;
   const ContactModel& model;
   const Walls& walls;
+  PoreClosure pores = {};
 };
 
 /// A contact, or a pair about to be one, as a visitor meets it.
@@ -46,6 +47,7 @@ void visit_bucket(const ContactWorld& w, const ContactList::Bucket& bucket, cons
     in.elastic_radius = elastic_radius(w.model, a.radius, b.radius);
     in.sintering_radius = neck ? sintering_radius(w.model.sintering->radius, a.radius, b.radius) : 0.0;
     in.reduced_mass = 1 / (a.inverse_mass + b.inverse_mass);
+    in.flow_share = w.pores.share(i, j);
     visit(ContactView{i, j, false, k, branch / d, branch, in}, law, neck);
   }
 }

@@ -75,7 +75,7 @@ call 0 help
 # A newer source, or a file that was removed: builds again, once.
 DENSIFY_NO_INSTALL=1
 export DENSIFY_NO_INSTALL
-echo "g++ cmake ninja-build libeigen3-dev libhdf5-dev libtomlplusplus-dev libcli11-dev libfmt-dev
+echo "g++ cmake ninja-build libeigen3-dev libhdf5-dev libtomlplusplus-dev libcli11-dev libfmt-dev voro++-dev
 libgtest-dev python3-numpy python3-h5py" | tr ' ' '\n' >"$scratch/installed"
 touch "$house/dem/law.h"
 call 0 help

@@ -80,7 +80,8 @@ TEST_P(EveryPacking, SameWithTwoThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Checkpoint, EveryPacking,
                          ::testing::Values(Packing{"periodic", periodic_packing}, Packing{"driven", driven_packing},
-                                           Packing{"cylinder", cylinder_packing}),
+                                           Packing{"cylinder", cylinder_packing}, Packing{"closing", closing_packing},
+                                           Packing{"closing_cylinder", closing_cylinder}),
                          [](const auto& test) { return test.param.name; });
 
 // A run killed while it writes checkpoint after checkpoint leaves one that can be read.  The child reports its first

@@ -363,3 +363,33 @@ TEST(MaterialLibrary, HoldsCompleteMaterials) {
         << name;
   }
 }
+
+// The diffusion of NiAl was fitted to a die specimen of 58 um: another kind of specimen says so, and so does a much
+// wider die; other diffusion, or another statement, is another set of parameters.
+TEST(Scene, CalibrationNamesItsSpecimen) {
+  const auto lines = [](const std::string& shape, double size, const std::string& material, bool sinters) {
+    return calibration_warnings(
+        read_scene_text("[materials.NiAl]\nlibrary = \"NiAl\"\n" + material +
+                            "[[powder]]\nmaterial = \"NiAl\"\nnumber = 100\nsizes = \"list\"\ndiameters = [\"4 um\"]\n"
+                            "[specimen]\n" +
+                            shape + (sinters ? "[contact.sintering]\n" : "") +
+                            "[process]\n[[process.stage]]\nname = \"heat\"\nduration = \"1 h\"\n"
+                            "temperature = \"1400 degC\"\n",
+                        {}),
+        size);
+  };
+  const std::string die = "shape = \"cylinder\"\ndiameter = \"58 um\"\n", cell = "shape = \"periodic\"\n";
+  EXPECT_TRUE(lines(die, 58e-6, "", true).empty());
+  EXPECT_TRUE(lines(die, 80e-6, "", true).empty());
+  const auto wide = lines(die, 90e-6, "", true);
+  ASSERT_EQ(wide.size(), 1u);
+  EXPECT_NE(wide[0].find("shape \"cylinder\" of 58 um, and this is one of shape \"cylinder\" of 90 um"),
+            std::string::npos)
+      << wide[0];
+  const auto periodic = lines(cell, 40e-6, "", true);
+  ASSERT_EQ(periodic.size(), 1u);
+  EXPECT_EQ(periodic[0].find("the diffusion of NiAl was fitted to densities of a specimen of shape \"cylinder\""), 0u);
+  EXPECT_TRUE(lines(cell, 40e-6, "", false).empty());
+  EXPECT_TRUE(lines(cell, 40e-6, "activation_enthalpy = \"180 kJ/mol\"\n", true).empty());
+  EXPECT_TRUE(lines(cell, 40e-6, "calibrated_on = \"periodic\"\ncalibrated_size = \"40 um\"\n", true).empty());
+}

@@ -95,6 +95,18 @@ inline Setup cylinder_packing(int threads) {
   return s;
 }
 
+/// Packings whose pores resist from the first necks on.
+inline Setup closing_packing(int threads) {
+  Setup s = driven_packing(threads);
+  s.contact.sintering->closing_porosity = 0.6;
+  return s;
+}
+inline Setup closing_cylinder(int threads) {
+  Setup s = cylinder_packing(threads);
+  s.contact.sintering->closing_porosity = 0.6;
+  return s;
+}
+
 inline void run_steps(Simulation& simulation, int steps) {
   for (int k = 0; k < steps; ++k) simulation.advance();
 }
@@ -118,6 +130,7 @@ class StateBits {
     add(s.punch), add(s.expansion), add(s.temperature), add(s.time), add(s.last_step), add(s.stable_step);
     add(s.critical_step), add(s.steps), add(s.inertia_free), add(s.active_since), add(s.control.strain_rate);
     add(s.control.inertial_number), add(s.cell_drive);
+    add(s.local_density.of), add(s.local_density.powder), add(s.local_density.builds);
   }
   bool operator==(const StateBits&) const = default;
   std::size_t size() const { return bits_.size(); }

@@ -32,6 +32,7 @@ done | sort | xargs -r awk '
     if (core && included ~ /<(deal\.II\/|petsc|slepc|mpi)/) complain(room " never meets deal.II, PETSc or MPI")
     if (core && included ~ /<CLI\//) complain("only app may include CLI11")
     if (room == "base" && included ~ /<(hdf5|H5)/) complain("base may not include HDF5")
-    if (core && header && included ~ /<(toml\+\+|toml\.h|fmt\/|hdf5|H5)/) complain("too heavy for a header, include it in the .cc")
+    if (room == "base" && included ~ /<voro/) complain("base may not include Voro++")
+    if (core && header && included ~ /<(toml\+\+|toml\.h|fmt\/|hdf5|H5|voro\+\+)/) complain("too heavy for a header, include it in the .cc")
   }
   END { exit failed }'

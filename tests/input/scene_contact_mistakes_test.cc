@@ -108,6 +108,34 @@ TEST(SceneMistakes, NeckThatStartsBeyondItsEquilibrium) {
   EXPECT_EQ(mistake("model = \"viscoelastic\"", "starting_neck = 0.95"), "accepted");
 }
 
+TEST(SceneMistakes, PoreClosure) {
+  const auto with = [](const char* key) {
+    return mistake("model = \"viscoelastic\"",
+                   std::string("model = \"viscoelastic\"\n[contact.sintering.pore_closure]\n") + key);
+  };
+  EXPECT_EQ(with("porosity = 0.05"), "accepted");
+  EXPECT_EQ(with(""), "accepted");
+  EXPECT_EQ(with("porosity = 0"),
+            "scene.toml:27: contact.sintering.pore_closure.porosity: must be > 0 and < 1, found 0");
+  EXPECT_EQ(with("porosity = 1"),
+            "scene.toml:27: contact.sintering.pore_closure.porosity: must be > 0 and < 1, found 1");
+  EXPECT_EQ(with("porosity = \"5 um\""),
+            "scene.toml:27: contact.sintering.pore_closure.porosity: \"5 um\": expected plain number such as 0.3, got "
+            "length");
+  EXPECT_EQ(with("density = 0.9"),
+            "scene.toml:27: contact.sintering.pore_closure.density: unknown key; known here: porosity");
+}
+
+TEST(SceneMistakes, CalibrationOfNoKnownKind) {
+  EXPECT_EQ(
+      mistake("library = \"NiAl\"", "library = \"NiAl\"\ncalibrated_on = \"die\""),
+      "scene.toml:3: materials.NiAl.calibrated_on: \"die\" is not among \"cylinder\", \"box\", \"periodic\", \"free\"");
+  EXPECT_EQ(mistake("library = \"NiAl\"", "library = \"Cu\"\ncalibrated_size = \"58 um\""),
+            "scene.toml:3: materials.NiAl.calibrated_size: is the size of a specimen of no shape; give calibrated_on");
+  EXPECT_EQ(mistake("library = \"NiAl\"", "library = \"NiAl\"\ncalibrated_size = \"0 um\""),
+            "scene.toml:3: materials.NiAl.calibrated_size: must be > 0 m, found \"0 um\"");
+}
+
 TEST(SceneMistakes, WallsHalfGiven) {
   EXPECT_EQ(mistake("thermal_expansion = \"11.5e-6 1/K\"", "youngs_modulus = \"400 GPa\""),
             "scene.toml:16: walls.poissons_ratio: missing; give both youngs_modulus and poissons_ratio of the walls, "

@@ -104,6 +104,20 @@ TEST(Run, WithoutFrictionNothingRotates) {
   EXPECT_FALSE(result.has("/snapshots/000001/particles/angular_velocity"));
 }
 
+TEST(Run, WithoutPoreClosureThereAreNoLocalDensities) {
+  const ScratchFolder folder;
+  EXPECT_FALSE(has_column(lattice({}), "local_density"));
+  run_in(lattice({}), folder / "open");
+  const Scene closing = lattice({"contact.sintering.pore_closure.porosity=0.3"});
+  EXPECT_TRUE(has_column(closing, "local_density"));
+  run_in(closing, folder / "closing");
+  for (const bool is_closing : {false, true}) {
+    const Hdf5Reader result(folder / (is_closing ? "closing/result.h5" : "open/result.h5"));
+    EXPECT_EQ(result.has("/snapshots/000003/particles/local_density"), is_closing);
+    EXPECT_EQ(result.has("/snapshots/000003/contacts/flow_share"), is_closing);
+  }
+}
+
 TEST(Run, WithoutSinteringThereAreNoNecks) {
   const ScratchFolder folder;
   const Scene scene = lattice_without(folder, "[contact.sintering]");
