@@ -88,7 +88,7 @@ dem::Setup touching(const Crystal& c, double r, const Schedule& schedule) {
   contact.sintering->closing_porosity = c.onset;
   auto s = empty_setup(copper(), contact, schedule);
   fill_periodic(s, c.lattice, 1, 2 * r * (1 - 1e-9), r);
-  s.integration.mass_scaling = 1e16;
+  s.integration.mass_scaling = 1e17;
   return s;
 }
 
