@@ -98,7 +98,7 @@ NeckQuadrature copper_pair() {
   return {copper_radius, m.diffusion.effective(1300), m.surface_energy, m.dihedral_angle, 0};
 }
 
-// SC, BCC and FCC compressed from all sides at a constant rate, into the last two per cent of porosity.  The pressure
+// SC, BCC and FCC compressed from all sides at a constant rate, into the last per cents of porosity.  The pressure
 // is that of Z/2 contacts a sphere, each with F = eta d'/share + F_sint, eta = pi a^4/(8 D), a^2 = 2 r u:
 // p = -Z F d/(6 V), V the volume of a sphere's cell.  The spring in series lags by eta/(k share), some thousandths of
 // the pressure where the pores are nearly closed.
