@@ -33,6 +33,11 @@ void print_summary(const dem::RunSummary& s, const fs::path& folder) {
   if (const auto& c = s.inertia_free; c.steps > 0)
     fmt::print("{} of them without inertia ({} trials rejected): {} linear systems, {} iterations\n", c.steps,
                c.rejected, c.solutions, c.iterations);
+  if (s.loosely_held > 0)
+    fmt::print(
+        "floppy at the end: {} particles with fewer than four contacts to others of four, which only "
+        "tangential_share and mass_share hold\n",
+        s.loosely_held);
   fmt::print("warnings: {}\n", s.warnings.empty() ? "none" : std::to_string(s.warnings.size()));
   for (const auto& w : s.warnings) fmt::print("  {}\n", w);
   fmt::print("\nresults in {}\n", folder.string());
@@ -54,7 +59,7 @@ void print_ensemble(const dem::EnsembleSummary& s, const dem::Scene& scene, cons
   fmt::print("\n{} realisations ({}), mean and standard error:\n", h.realisations,
              perturbed ? "perturbations of one specimen" : "particle arrangements");
   line("relative density", "relative_density",
-       fmt::format(" +- {:.4f} numerical", last(h.mean, "relative_density_error")));
+       fmt::format(" +- {:.4f} numerical", last(h.mean, "relative_density_bias")));
   line("coordination number", "coordination_number", "");
   std::uint64_t steps = 0;
   double cpu = 0, packing = 0;

@@ -54,6 +54,15 @@ EnsembleHistory average(std::span<const History> histories, const std::vector<do
       error.push_back(c == 0 ? t : n > 1 ? std::sqrt(squares / (n - 1) / n) : std::nan(""));
     }
   }
+  // The noise of the mean is that of one run over sqrt(n); the bias stays.
+  if (std::count(first.columns.begin(), first.columns.end(), "relative_density_error") > 0) {
+    auto& whole = e.mean.values[column_index(e.mean, "relative_density_error")];
+    const auto& bias = e.mean.values[column_index(e.mean, "relative_density_bias")];
+    for (std::size_t r = 0; r < times.size(); ++r) {
+      const double noise = std::max(0.0, whole[r] * whole[r] - bias[r] * bias[r]);
+      whole[r] = std::sqrt(bias[r] * bias[r] + noise / n);
+    }
+  }
   for (const double t : times) {
     const auto& rows = first.values[0];
     const auto row = std::lower_bound(rows.begin(), rows.end(), t);

@@ -26,8 +26,9 @@ std::size_t column_index(const History&, std::string_view name);
 /// The times at which an ensemble is reported [s]: start, multiples of the interval, ends of stages, up to `end`.
 std::vector<double> common_times(const Schedule&, double interval, double end);
 
-/// Mean and standard error of every column at the times.  All histories have the same columns; a row's stage is that of
-/// the first history, where a time at the end of a stage belongs to the stage that it ends.
+/// Mean and standard error of every column at the times; of `relative_density_error` what is left of it for the mean.
+/// All histories have the same columns; a row's stage is that of the first history, where a time at the end of a stage
+/// belongs to the stage that it ends.
 EnsembleHistory average(std::span<const History>, const std::vector<double>& times);
 
 /// One table: the columns of a history with the means, then `<column>_standard_error` of each but the time.  Throws

@@ -65,11 +65,10 @@ double error_at_row(const Simulation& sim, const Measures& m, HistoryMemory& mem
   ErrorEstimate& e = memory.error;
   if (std::isnan(e.initial)) e.initial = m.relative_density;
   if (s.time > memory.time) {
-    const double share =
-        s.inertia_free
-            ? ErrorEstimate::solver_share * sim.setup().integration.inertia_free.step_tolerance / ErrorEstimate::memory
-            : inertial_number(sim, m, memory) *
-                  (s.contacts.neck.empty() ? ErrorEstimate::loose_share : ErrorEstimate::sintering_share);
+    const auto& free = sim.setup().integration.inertia_free;
+    const double share = s.inertia_free
+                             ? ErrorEstimate::share_without_inertia(free.step_tolerance, free.tangential_share)
+                             : ErrorEstimate::share(inertial_number(sim, m, memory), !s.contacts.neck.empty());
     e.advance(memory.density, m.relative_density, share);
   }
   const double peak = peak_load(sim);
@@ -106,6 +105,7 @@ std::vector<HistoryColumn> history_columns(const Setup& setup) {
                                {"pressure_Pa", "Pa"},
                                {"relative_density", "1"},
                                {"relative_density_error", "1"},
+                               {"relative_density_bias", "1"},
                                {"relative_density_inner", "1"},
                                {"shrinkage_x", "1"},
                                {"shrinkage_y", "1"},
@@ -150,6 +150,7 @@ std::vector<double> history_row(const Simulation& sim, const Measures& m, Histor
                           sim.pressure(),
                           m.relative_density,
                           memory.density_error,
+                          memory.error.bias,
                           m.relative_density_inner,
                           m.envelope.size[0] / memory.initial.size[0],
                           m.envelope.size[1] / memory.initial.size[1],

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <sstream>
 
 #include "base/check.h"
@@ -16,6 +17,8 @@
 #include "dem/io/result_file.h"
 #include "dem/io/result_folder.h"
 #include "dem/io/visualisation.h"
+#include "dem/network/network.h"
+#include "dem/run_watch.h"
 #include "dem/specimen_report.h"
 
 namespace densify::dem {
@@ -45,9 +48,6 @@ std::string text(const char* format, double a) {
   return buffer;
 }
 
-/// Share of the process in which a specimen may move more than a quasi-static one does.
-constexpr double tolerated_motion = 0.05;
-
 struct Paths {
   explicit Paths(const fs::path& folder)
       : checkpoint(folder / "checkpoint.h5"),
@@ -57,6 +57,14 @@ struct Paths {
         pictures(folder / "paraview") {}
   fs::path checkpoint, specimen, sizes, history, pictures;
 };
+
+/// Particles with fewer than four contacts to others of four, walls counted: normal forces alone do not hold them.
+std::size_t loosely_held(const Simulation& sim) {
+  const State& s = sim.state();
+  const auto loose = find_rattlers(
+      build_network({s.particles, s.contacts, s.cell, sim.table(), sim.setup().contact, s.walls}, s.time), 4);
+  return std::size_t(std::count(loose.begin(), loose.end(), true));
+}
 
 /// The first multiple of the interval after a time [s]; never, without an interval.
 double next_multiple(double interval, double time) {
@@ -114,19 +122,10 @@ class Run {
   void record(const Recording&, bool breakpoint);
   void write_checkpoint_now();
   void report_progress();
-  void warn_of_motion();
   void say(const std::string& line) const {
     if (options_.say) options_.say(line);
   }
   std::string stage_name(double t) const;
-  /// The key that makes masses smaller when it is lowered.
-  const char* what_sets_masses() const {
-    const IntegrationSettings& s = scene_.integration;
-    return !std::isnan(s.accuracy)          ? "accuracy"
-           : s.inertia == Inertia::uniform  ? "mass_scaling"
-           : !std::isnan(s.inertia_measure) ? "inertia_measure"
-                                            : "fixed_step";
-  }
 
   const Scene& scene_;
   const RunOptions& options_;
@@ -139,6 +138,7 @@ class Run {
   std::optional<Visualisation> pictures_;
   CheckpointOwner owner_;
   HistoryMemory memory_;
+  RunWatch watch_;  // without what the guards have seen in this call
   RunPosition position_;
   double last_snapshot_ = 0, next_row_ = 0, next_snapshot_ = 0;  // process time [s]
   double row_interval_ = 0, snapshot_interval_ = 0;
@@ -194,10 +194,12 @@ void Run::prepare() {
                              std::string(git_revision()), columns};
   if (options_.mode == Continue::resume) {
     position_ = read_checkpoint(paths_.checkpoint, *sim_, owner_);
-    if (position_.numbers.size() != HistoryMemory::size + 1)
+    if (position_.numbers.size() != HistoryMemory::size + 1 + RunWatch::size)
       throw InputError(paths_.checkpoint.string() + " is not readable (truncated or damaged)");
     memory_ = HistoryMemory::from(position_.numbers);
     last_snapshot_ = position_.numbers[HistoryMemory::size];
+    watch_ = RunWatch::from(std::span(position_.numbers).subspan(HistoryMemory::size + 1));
+    sim_->resume_guards(watch_.last_look);
     history_.emplace(HistoryFile::resume(paths_.history, columns, position_.history_bytes));
     say("resumed at process time " + text("%.6g s", sim_->state().time));
   } else {
@@ -237,12 +239,8 @@ void Run::record(const Recording& recording, bool breakpoint) {
   }
   if (!std::isfinite(m.relative_density) || !m.stress.allFinite())
     throw RunError("density or stress is no longer finite; try a smaller step_safety or mass_scaling");
-  const bool loose = !sim_->table().any_active() && scene_.contact.damping_ratio > 0 && sim_->pressure() > 0;
-  if (loose && m.damping_share > 0.01 && summary_.warnings.empty())
-    summary_.warnings.push_back("dampers carry " + text("%.1f %%", 100 * m.damping_share) +
-                                " of the contact forces at process time " + text("%.4g s", state.time) +
-                                ": the scaled masses make (4.24) viscous; lower contact.damping_ratio or " +
-                                what_sets_masses());
+  const bool loose = !sim_->table().any_active() && scene_.contact.damping_ratio > 0 && sim_->load().size > 0;
+  if (loose) watch_.note_damping(m.damping_share, state.time);
   position_.history_bytes = history_->add_row(history_row(*sim_, m, memory_), stage_name(state.time));
   ++position_.history_rows;
   summary_.density_error = memory_.density_error;
@@ -268,6 +266,7 @@ void Run::write_checkpoint_now() {
   history_->sync();
   position_.numbers = memory_.numbers();
   position_.numbers.push_back(last_snapshot_);
+  for (const double n : watch_.and_then(sim_->guards()).numbers()) position_.numbers.push_back(n);
   write_checkpoint(paths_.checkpoint, *sim_, position_, owner_);
   last_checkpoint_ = clock_.seconds();
   checkpoint_seconds_ += watch.seconds();
@@ -280,7 +279,7 @@ void Run::report_progress() {
   const State& s = sim_->state();
   const double end = scene_.schedule.end(), done = s.time - start_time_;
   options_.progress({scene_.schedule.stages()[scene_.schedule.stage_at(s.time)].name, s.time / end, s.time,
-                     sim_->temperature(), sim_->pressure(), memory_.density,
+                     sim_->temperature(), sim_->load().size, memory_.density,
                      spent > 0 ? double(s.steps - start_steps_) / spent : 0,
                      done > 0 ? spent * (end - s.time) / done : 0});
 }
@@ -336,18 +335,6 @@ void Run::loop() {
   }
 }
 
-/// The quasi-static criterion: inertia must not take part in the process for more than a short while.
-void Run::warn_of_motion() {
-  const Guards& guards = sim_->guards();
-  const double share = guards.not_quasi_static() / (sim_->state().time - start_time_);
-  if (!(share > tolerated_motion)) return;
-  summary_.warnings.push_back(
-      "not quasi-static for " + text("%.3g %%", 100 * share) + " of the process: kinetic energy above " +
-      text("%.3g", scene_.integration.guards.quasi_static_ratio) + " of the elastic energy, at most " +
-      text("%.3g", guards.largest_ratio()) + " at process time " + text("%.4g s", guards.time_of_largest_ratio()) +
-      "; lower " + what_sets_masses() + ", or raise the damping ratios");
-}
-
 RunSummary Run::whole() {
   try {
     prepare();
@@ -369,11 +356,10 @@ RunSummary Run::whole() {
   output_seconds_ += watch.seconds();
   report_progress();
 
-  warn_of_motion();
+  const State& state = sim_->state();
+  summary_.warnings = watch_.and_then(sim_->guards()).warnings(scene_.integration, state.time);
   for (std::string& line : calibration_warnings(scene_, sim_->setup().container.size[0]))
     summary_.warnings.push_back(std::move(line));
-
-  const State& state = sim_->state();
   summary_.wall_seconds = clock_.seconds();
   summary_.packing_seconds = packing_seconds_;
   summary_.cpu_seconds = thread_seconds() - packing_cpu_seconds_;
@@ -382,6 +368,7 @@ RunSummary Run::whole() {
   summary_.list_builds = state.contacts.builds;
   summary_.bytes = sim_->bytes();
   summary_.inertia_free = sim_->inertia_free_count();
+  if (state.inertia_free) summary_.loosely_held = loosely_held(*sim_);
   summary_.end_time = state.time;
   // Sampled shares are scaled to the time that is not accounted for otherwise.
   const double rest = std::max(0.0, summary_.wall_seconds - packing_seconds_ - output_seconds_ - checkpoint_seconds_);

@@ -49,6 +49,7 @@ struct RunSummary {
   std::size_t list_builds = 0;
   std::size_t bytes = 0;          ///< of state and scratch
   InertiaFreeCount inertia_free;  ///< steps without inertia and what they took
+  std::size_t loosely_held = 0;   ///< at the end, without inertia: floppy but for tangential_share and mass_share
   Measures last;
   double density_error = 0;  ///< estimated, of the last density
   double end_time = 0;       ///< process time [s]

@@ -214,7 +214,7 @@ void Simulation::rebuild_lists() {
     throw RunError(error.what());
   }
   state_.walls.rebuild(state_.particles, state_.contacts.skin);
-  pass_.list_changed(state_.contacts, state_.particles.size());
+  pass_.list_changed();
   prune_near(0);
 }
 
@@ -402,12 +402,13 @@ bool Simulation::all_at_equilibrium() const {
 void Simulation::restore(State state) {
   evaluated_ = refreshed_ = false;
   guards_.forget();
+  touching_volume_ = unset;
   state_ = std::move(state);
   table_.active_since() = state_.active_since;
   table_unsettled_ = true;
   const double since_time = state_.time - state_.last_step;
   if (!std::isnan(state_.temperature)) table_.update(state_.temperature, since_time);
-  pass_.list_changed(state_.contacts, state_.particles.size());
+  pass_.list_changed();
   may_have_travelled_ = std::numeric_limits<double>::infinity();
 }
 
@@ -430,7 +431,7 @@ std::size_t Simulation::bytes() const {
   const ContactList& c = state_.contacts;
   return of(p.body) + of(p.reference_radius) + of(p.material) + of(p.id) + of(p.force) + of(p.angular_velocity) +
          of(p.torque) + of(c.first) + of(c.second) + of(c.tangential) + of(c.neck) + of(c.reference_position) +
-         of(state_.walls.contacts()) + pass_.bytes() + inertia_free_.bytes();
+         of(state_.walls.contacts()) + of(stiffness_.of) + pass_.bytes() + inertia_free_.bytes();
 }
 
 }  // namespace densify::dem

@@ -152,10 +152,13 @@ class Simulation {
   /// Throws RunError when the state is not sound, between two looks of the guards: before it is written anywhere.
   void require_sound() { guards_.require_sound(guard_view()); }
   const Guards& guards() const { return guards_; }
+  void resume_guards(double last_look) { guards_.resume(last_look); }
   void set_gravity(const Vec3& g) { setup_.integration.gravity = g; }
 
   double temperature() const { return setup_.schedule.temperature(state_.time); }
-  double pressure() const { return setup_.schedule.pressure(state_.time); }
+  /// On the punch, or what drives a cell: the mean of its three normal stresses, NaN while a rate drives one of them
+  /// [Pa].
+  double pressure() const;
   /// True for a periodic cell of which a stress drives a component, at some time of the process.
   bool stress_driven() const { return setup_.cell_path && setup_.cell_path->by_stress(); }
   /// Of the contacts in the last evaluation, symmetrised, tension positive; only of a stress-driven cell [Pa].
@@ -208,10 +211,11 @@ class Simulation {
   InertiaFree inertia_free_;
   State state_;
   Guards guards_;
-  bool refreshed_ = false;       // between refresh() and move()
-  bool evaluated_ = false;       // between evaluate() and move()
-  bool table_unsettled_ = true;  // the table changes at the next step even at constant temperature
-  StepStiffness stiffness_;      // equalised inertia only: of the last pass
+  bool refreshed_ = false;          // between refresh() and move()
+  bool evaluated_ = false;          // between evaluate() and move()
+  bool table_unsettled_ = true;     // the table changes at the next step even at constant temperature
+  double touching_volume_ = unset;  // of a driven cell when particles touched last [m^3]
+  StepStiffness stiffness_;         // equalised inertia only: of the last pass
   StepControl control_;
   double column_mass_ = 0;  // equalised inertia only: of the column's uniform compaction [kg]
   // How far surfaces may have approached since the last pruning, from above, and what the list still allows [m].

@@ -15,6 +15,17 @@ CellGoal Simulation::cell_goal(std::size_t component) const {
           goal(path, schedule, state_.cell_drive, component, state_.time)};
 }
 
+double Simulation::pressure() const {
+  if (!stress_driven()) return setup_.schedule.pressure(state_.time);
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const CellGoal now = cell_goal(c);
+    if (now.control != CellControl::stress) return unset;
+    sum -= now.value;
+  }
+  return sum / 3;
+}
+
 ProcessLoad Simulation::load() const {
   const Schedule& schedule = setup_.schedule;
   if (!stress_driven()) return {pressure(), std::abs(schedule.pressure_rate(state_.time))};
@@ -72,6 +83,15 @@ double Simulation::cell_leap() const {
 
 void Simulation::drive_cell(LeapfrogSteps steps) {
   constexpr double furthest = 0.05;  // strain of one step
+  constexpr double apart = 1.05;     // of the volume at which particles touched last
+  const double volume = state_.cell.volume();
+  if (!cell_stress_.isZero(0) || std::isnan(touching_volume_)) touching_volume_ = volume;
+  if (stress_driven() && setup_.cell_path->by_stress(setup_.schedule.stage_at(state_.time)) &&
+      volume > apart * touching_volume_)
+    throw RunError("no two particles touch, and the cell has grown by " +
+                   std::to_string(100 * (volume / touching_volume_ - 1)) +
+                   " % since: nothing brings it back; keep some pressure on loose grains, or let necks form before it "
+                   "is taken away");
   kick(state_.cell_drive, state_.cell, *setup_.cell_path, setup_.schedule, state_.time, cell_stress_, steps.kick,
        steps.drift);
   const double strain = steps.drift * state_.cell.velocity_gradient.norm();

@@ -83,6 +83,8 @@ void kick(CellDrive& drive, Cell& cell, const CellPath& path, const Schedule& sc
           double kick_step, double step) {
   const std::size_t stage = schedule.stage_at(time);
   const double volume = cell.volume();
+  // Without contact there is no vibration to still, and a mean that runs ahead would drive the cell.
+  const double damping = stress.isZero(0) ? 0.0 : drive.damping;
   for (std::size_t c = 0; c < 6; ++c) {
     const auto [i, j] = tensor_places[c];
     double& rate = cell.velocity_gradient(i, j);
@@ -94,7 +96,7 @@ void kick(CellDrive& drive, Cell& cell, const CellPath& path, const Schedule& sc
     }
     const double shear = i == j ? 1 : 2;  // L_xy = 2 D_xy
     const double power = shear * volume * (goal(path, schedule, drive, c, time) - stress(i, j));
-    rate += kick_step / drive.mass * (power - drive.damping * (rate - drive.mean[c]));
+    rate += kick_step / drive.mass * (power - damping * (rate - drive.mean[c]));
     follow(rate, drive.memory, kick_step, drive.mean[c], drive.slope[c]);
   }
   drive.deformation += step * cell.velocity_gradient * drive.deformation;

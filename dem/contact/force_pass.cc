@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t fits_second_cache = 32768;
 }  // namespace
 
-void ForcePass::list_changed(const ContactList&, std::size_t) {
+void ForcePass::list_changed() {
   near_.clear();
 }
 
@@ -179,29 +179,6 @@ std::size_t ForcePass::bytes() const {
   std::size_t b = near_.bytes() + chunks_.bytes() + for_others_.capacity() * sizeof(double);
   for (const auto& s : sums_) b += s.capacity() * sizeof(double);
   return b;
-}
-
-NormalInput normal_input(const ContactModel& model, const Particles& particles, const ContactList& list,
-                         const Cell& cell, const std::vector<double>& expansion_step, PassTime clock, std::size_t k) {
-  const std::uint32_t i = list.i(k), j = list.j(k);
-  const Body &a = particles.body[i], &b = particles.body[j];
-  Vec3 branch = b.position - a.position;
-  if (cell.periodic) branch += cell.shift(list.image(k));
-  const double d = branch.norm();
-  Vec3 v = b.velocity - a.velocity;
-  if (cell.periodic) v += cell.velocity_gradient * branch;
-  NormalInput in;
-  in.overlap = d - a.radius - b.radius;
-  const bool necked = !list.neck.empty() && list.neck[k].phase != NeckPhase::loose;
-  const double grown = thermal_growth(a.radius, b.radius, in.overlap, expansion_step[particles.material[i]],
-                                      expansion_step[particles.material[j]], necked);
-  in.rate = v.dot(branch) / d - (clock.step > 0 ? grown / clock.step : 0.0);
-  in.elastic_radius = elastic_radius(model, a.radius, b.radius);
-  in.sintering_radius = model.sintering ? sintering_radius(model.sintering->radius, a.radius, b.radius) : 0;
-  in.reduced_mass = 1 / (a.inverse_mass + b.inverse_mass);
-  in.step = clock.step;
-  in.time = clock.time;
-  return in;
 }
 
 }  // namespace densify::dem

@@ -52,9 +52,9 @@ class ForcePass {
   void set_pores(const PoreClosure& pores) { pores_ = pores; }
 
   /// To be called after every rebuild of the list; the next passes visit all its pairs until near() is pruned.
-  void list_changed(const ContactList&, std::size_t particles);
+  void list_changed();
 
-  /// The pairs that the passes visit; who prunes it must prune again before its travel() reaches its skin().
+  /// The pairs that the passes visit; who prunes it must prune again before particles have travelled its skin.
   NearList& near() { return near_; }
   const NearList& near() const { return near_; }
   const Chunks& chunks() const { return chunks_; }
@@ -136,9 +136,5 @@ inline double elastic_radius(const ContactModel& m, double ri, double rj) {
 inline double sintering_radius(SinteringRadius kind, double ri, double rj) {
   return kind == SinteringRadius::smaller ? std::min(ri, rj) : 2 * ri * rj / (ri + rj);
 }
-
-/// The input of the normal law of pair k, for callers outside the hot loop (time step limits, network, checks).
-NormalInput normal_input(const ContactModel&, const Particles&, const ContactList&, const Cell&,
-                         const std::vector<double>& expansion_step, PassTime, std::size_t k);
 
 }  // namespace densify::dem

@@ -341,15 +341,14 @@ void Guards::look_at_contacts(const GuardView& view) {
   EnergySums sums = add_contacts(view);
   add_motion(view, sums);
   sums.elastic += s.walls.elastic_energy(s.particles, view.table, view.setup.contact);
-  const double interval = looked_ ? s.time - time_ : 0.0;
   if (masses_stand(view)) require_balance(view, sums);
 
   const bool flowing = s.cell.periodic && !s.cell.velocity_gradient.isZero(0);
   const bool driven =
       flowing || !view.setup.loads.empty() || sums.reserve > 0 || (view.pressure > 0 && s.punch.mass > 0);
-  if (looked_ && driven) {
+  if (!std::isnan(time_) && driven) {
     const double springs = sums.elastic + sums.reserve;
-    if (sums.motion() > view.setup.integration.guards.quasi_static_ratio * springs) not_quasi_static_ += interval;
+    if (sums.motion() > view.setup.integration.guards.quasi_static_ratio * springs) not_quasi_static_ += s.time - time_;
     if (springs > 0 && sums.motion() / springs > largest_ratio_)
       largest_ratio_ = sums.motion() / springs, time_of_largest_ratio_ = s.time;
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,10 @@ class Guards {
   /// Forgets what has been seen: another state took the place of the last one.
   void forget();
 
+  /// Time of the last look at the contacts, NaN before one [s]; who resumes a run gives it back.
+  double last_look() const { return time_; }
+  void resume(double last_look) { time_ = last_look; }
+
   /// Process time for which the quasi-static criterion did not hold, so far [s].
   double not_quasi_static() const { return not_quasi_static_; }
   /// The largest kinetic over elastic energy seen in a loaded specimen, and when [1, s].
@@ -66,7 +71,7 @@ class Guards {
 
   // Of the last look at the contacts:
   bool looked_ = false;
-  double time_ = 0;  // [s]
+  double time_ = std::numeric_limits<double>::quiet_NaN();  // [s]; none
   std::uint64_t steps_ = 0;
   double budget_ = 0;          // mechanical energy that there can be [J]
   double supply_rate_ = 0;     // [W]

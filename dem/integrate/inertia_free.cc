@@ -75,12 +75,11 @@ struct InertiaFree::Trial {
   double wall_stretch = 1;  // of the lateral walls by heat over the step
   double load = 0;          // p A on the guided wall [N]
   std::optional<std::size_t> guided;
-  mutable double young = 1;  // share of a young neck's least resistance, falls from iterate to iterate
 };
 
 InertiaFree::Trial InertiaFree::prepare(const State& s, const Setup& setup, const PairTable& table,
                                         std::optional<std::size_t> guided, double step) {
-  Trial t{step, s.time + step, 1, 0, guided, 1};
+  Trial t{step, s.time + step, 1, 0, guided};
   const double breakpoint = setup.schedule.next_breakpoint(s.time);
   if (t.end >= breakpoint) t.end = breakpoint;
   const double temperature = setup.schedule.temperature(t.end);
@@ -138,7 +137,7 @@ void InertiaFree::look_ahead(const State& s, const Trial& t) {
   }
 }
 
-void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t) {
+void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t, double young) {
   look_ahead(s, t);
   network_.clear();
   network_.resist(inertia_);
@@ -171,13 +170,12 @@ void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t) {
       const double grown_j = growth_[ahead_.material[view.j]] / (1 + growth_[ahead_.material[view.j]]);
       motion = network_.relative(link, velocity_);
       if (deforming) motion += s.cell.velocity_gradient * view.branch;
-      // Through a neck only the way to its plane grows.
-      const double cut = neck && neck->phase != NeckPhase::loose ? 0.5 * view.input.overlap : 0.0;
-      c.growth_in_rate = grown_i * (a.radius + cut) + grown_j * (b.radius + cut);
+      c.growth_in_rate = thermal_growth(a.radius, b.radius, view.input.overlap, grown_i, grown_j,
+                                        neck && neck->phase != NeckPhase::loose);
     }
     const double rate = motion.dot(view.normal);
     const NormalForce force = force_at_end(law, neck, c, rate);
-    link.coefficient = coefficient(law, neck, c, rate, force.total, t.young);
+    link.coefficient = coefficient(law, neck, c, rate, force.total, young);
     link.lateral = lateral_share * link.coefficient;
     network_.add_force(link, force.total * view.normal + link.lateral * (motion - rate * view.normal), resultant_);
     // The force turns with the branch: what pulls holds its ends across, as a string does.  What pushes lets them go,
@@ -195,9 +193,10 @@ bool InertiaFree::balance(const State& s, const Setup& setup, const Trial& t) {
   double best = std::numeric_limits<double>::infinity();
   Vector best_velocity = velocity_;
   constexpr double falling = 0.1;
+  double young = 1;
   for (int n = 0;; ++n) {
-    t.young = std::pow(falling, n);
-    respond(s, setup, t);
+    young = std::pow(falling, n);
+    respond(s, setup, t, young);
     const double residual = resultant_.norm(), share = residual / std::max(force_scale_, smallest_force);
     if (share <= goal) return true;
     if (share < best) {
@@ -216,7 +215,7 @@ bool InertiaFree::balance(const State& s, const Setup& setup, const Trial& t) {
     velocity_ += (n < whole_steps ? 1.0 : 0.5) * change_;
   }
   velocity_ = best_velocity;
-  respond(s, setup, t);
+  respond(s, setup, t, young);
   return false;
 }
 
@@ -318,7 +317,8 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, c
 }
 
 std::size_t InertiaFree::bytes() const {
-  return network_.links().capacity() * sizeof(NetworkLink) +
+  return network_.links().capacity() * sizeof(NetworkLink) + ahead_.body.capacity() * sizeof(Body) +
+         ahead_.material.capacity() + walls_ahead_.contacts().capacity() * sizeof(walls_ahead_.contacts()[0]) +
          std::size_t(velocity_.size() + resultant_.size() + change_.size() + external_.size() + before_.size() +
                      inertia_.size()) *
              sizeof(double);

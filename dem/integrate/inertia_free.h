@@ -58,7 +58,8 @@ class InertiaFree {
 
   Trial prepare(const State&, const Setup&, const PairTable&, std::optional<std::size_t> guided, double step);
   void look_ahead(const State&, const Trial&);
-  void respond(const State&, const Setup&, const Trial&);
+  /// `young`: share of a young neck's least resistance, falls from iterate to iterate.
+  void respond(const State&, const Setup&, const Trial&, double young);
   bool balance(const State&, const Setup&, const Trial&);
   double error_estimate(const State&, const Trial&) const;
   void apply(State&, const Trial&) const;

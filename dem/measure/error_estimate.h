@@ -19,18 +19,29 @@ struct ErrorEstimate {
   static constexpr double largest_share = 0.15;                    ///< of c I: a collapse is soon forgotten
   static constexpr double memory = 0.1;                            ///< lambda
   static constexpr double solver_share = 20;                       ///< without inertia: E per step_tolerance
-  static constexpr double noise_share = 0.24;                      ///< s sqrt(N) per density gained
-  static constexpr double unloading_share = 0.15;   ///< s sqrt(N) per density, of what no longer carries its peak load
-  static constexpr double deviations = 4;           ///< of the noise that count as error
-  static constexpr std::size_t fewest_chaotic = 8;  ///< particles; fewer follow their path whatever the rounding
+  static constexpr double tangential_share = 0.6;    ///< without inertia: E per inertia_free.tangential_share
+  static constexpr double largest_tangential = 0.1;  ///< of it
+  static constexpr double noise_share = 0.24;        ///< s sqrt(N) per density gained
+  static constexpr double unloading_share = 0.15;    ///< s sqrt(N) per density, of what no longer carries its peak load
+  static constexpr double deviations = 4;            ///< of the noise that count as error
+  static constexpr std::size_t fewest_chaotic = 8;   ///< particles; fewer follow their path whatever the rounding
 
   double bias = 0;                ///< E
   double initial = std::nan("");  ///< rho_0
 
+  /// c I of an inertial number.
+  static double share(double inertial_number, bool sintering) {
+    return std::min(largest_share, (sintering ? sintering_share : loose_share) * inertial_number);
+  }
+  /// What stands for c I without inertia.
+  static double share_without_inertia(double step_tolerance, double tangential) {
+    return (solver_share * step_tolerance + std::min(largest_tangential, tangential_share * tangential)) / memory;
+  }
+
   /// Moves on to a density; `share` is c I between the last density and this one.
   void advance(double density_before, double density, double share) {
     const double forgotten = std::exp(-std::abs(density - density_before) / memory);
-    bias = forgotten * bias + (1 - forgotten) * memory * std::min(share, largest_share);
+    bias = forgotten * bias + (1 - forgotten) * memory * share;
   }
 
   /// Standard deviation of the density of one run; `relieved` is the share of its peak load that a sintered powder no

@@ -27,7 +27,7 @@ struct World {
   std::vector<ContactRecord> compute(const std::vector<double>& growth, double step) {
     rebuild(list, particles, cell, {1.0, 1.0}, {model.friction.has_value(), false}, 1);
     ForcePass pass(model, 1);
-    pass.list_changed(list, particles.size());
+    pass.list_changed();
     std::vector<ContactRecord> record;
     pass.compute(particles, list, cell, table, growth, {0, step}, &record, nullptr);
     return record;

@@ -1,14 +1,16 @@
 #!/bin/sh
 # A run that is killed at any moment (SIGKILL, also while it writes) and resumed again and again ends with the same
 # history.csv and the same final state, bit for bit, as one that was left alone; two threads end as one does.
-# usage: kill_and_resume.sh DENSIFY SCENE WORK_FOLDER
+# usage: kill_and_resume.sh DENSIFY SCENE WORK_FOLDER SETTING...     (settings that make a run of a second or two)
 set -eu
 densify=$1 scene=$2 work=$3
+shift 3
+settings=
+for setting in "$@"; do settings="$settings --set $setting"; done
 rm -rf "$work"
 mkdir -p "$work"
 
-# Smaller masses than the scene's: a run of a second or two, long against starting a program.
-run() { exec "$densify" run "$scene" --set integration.mass_scaling=1e17 --quiet "$@"; }  # in a subshell or behind &
+run() { exec "$densify" run "$scene" $settings --quiet "$@"; }  # in a subshell or behind &
 
 begun=$(date +%s%N)
 (run --out "$work/whole")

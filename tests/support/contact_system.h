@@ -19,8 +19,7 @@ struct ContactSystem {
 inline dem::Linearisation linearise(const Simulation& sim, std::size_t k) {
   const auto& list = sim.state().contacts;
   const auto& model = sim.setup().contact;
-  const auto in = normal_input(model, sim.state().particles, list, sim.state().cell,
-                               std::vector<double>(sim.table().materials(), 0.0), {sim.state().time, 0}, k);
+  const auto in = normal_input(sim, k);
   auto bucket = list.buckets.begin();
   while (k >= bucket->end) ++bucket;
   const auto& row = sim.table().row(bucket->material_a, bucket->material_b);

@@ -127,14 +127,34 @@ inline void shake(Particles& p, double speed, unsigned seed) {
   for (auto& b : p.body) b.velocity -= mean;
 }
 
+/// What the normal law of pair k sees at the present state, without thermal growth and at rest in time.
+inline dem::NormalInput normal_input(const Simulation& sim, std::size_t k) {
+  const auto& state = sim.state();
+  const auto& list = state.contacts;
+  const auto& model = sim.setup().contact;
+  const dem::Body &a = state.particles.body[list.i(k)], &b = state.particles.body[list.j(k)];
+  Vec3 branch = b.position - a.position, v = b.velocity - a.velocity;
+  if (state.cell.periodic) {
+    branch += state.cell.shift(list.image(k));
+    v += state.cell.velocity_gradient * branch;
+  }
+  dem::NormalInput in;
+  in.overlap = branch.norm() - a.radius - b.radius;
+  in.rate = v.dot(branch.normalized());
+  in.elastic_radius = elastic_radius(model, a.radius, b.radius);
+  in.sintering_radius = model.sintering ? sintering_radius(model.sintering->radius, a.radius, b.radius) : 0;
+  in.reduced_mass = 1 / (a.inverse_mass + b.inverse_mass);
+  in.time = state.time;
+  return in;
+}
+
 /// Joins every overlapping pair by a neck of the given phase that is free of stress now.
 inline void bond_all(Simulation& sim, dem::NeckPhase phase, double neck_over_radius) {
   auto& state = sim.mutable_state();
   auto& list = state.contacts;
   list.neck.assign(list.size(), dem::NeckHistory{});
   for (std::size_t k = 0; k < list.size(); ++k) {
-    const auto in = normal_input(sim.setup().contact, state.particles, list, state.cell,
-                                 std::vector<double>(sim.table().materials(), 0.0), {0, 0}, k);
+    const auto in = normal_input(sim, k);
     if (in.overlap < 0) list.neck[k] = {neck_over_radius * in.sintering_radius, 0, 0, phase};
   }
 }
