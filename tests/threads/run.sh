@@ -1,11 +1,11 @@
 #!/bin/sh
 # The tests with several threads under the thread sanitizer (preset `tsan`).  Clang's OpenMP runtime tells the sanitizer
 # through Archer what it orders; without Archer every parallel region would look like a race.
-# usage: run.sh     (builds the two test programs it needs)
+# usage: run.sh     (builds the test programs it needs)
 set -eu
 cd "$(dirname "$(readlink -f "$0")")/../.."
 mkdir -p build
-{ cmake --preset tsan && cmake --build build/tsan --target test_dem test_invariance; } >build/tsan.log 2>&1 || {
+{ cmake --preset tsan && cmake --build build/tsan --target test_dem test_invariance test_verification; } >build/tsan.log 2>&1 || {
   tail -n 40 build/tsan.log
   exit 1
 }
@@ -18,3 +18,5 @@ if build/tsan/planted_race >build/tsan/planted_race.log 2>&1 || ! grep -q 'data 
 fi
 build/tsan/bin/test_dem --gtest_brief=1 --gtest_filter='Kernels.*Threads*:ForcePass*:NearList*:ContactList*:Checkpoint*'
 build/tsan/bin/test_invariance --gtest_brief=1 --gtest_filter='Invariance.Threads:Recording*'
+build/tsan/bin/test_verification --gtest_brief=1 \
+  --gtest_filter='EqualisedInertia.SameStateForThreads*:CellDrive.ThreadsAndRestart'
