@@ -7,7 +7,7 @@
 #include "dem/io/result_file.h"
 #include "dem/io/stored_snapshot.h"
 #include "dem/measure/measures.h"
-#include "dem/measure/particle_stress.h"
+#include "dem/measure/moment_stresses.h"
 #include "tests/dem/scratch_folder.h"
 #include "tests/dem/small_packings.h"
 #include "tests/support/setups.h"
@@ -87,6 +87,11 @@ Snapshot unequal_pair() {
   s.sintering_force = {0.5};
   s.neck_radius = {0.25};
   s.phase = {std::uint8_t(NeckPhase::sintering)};
+  return s;
+}
+
+Snapshot with_stress(Snapshot s) {
+  s.stress = particle_stresses(s, StressPart::total);
   return s;
 }
 
@@ -213,6 +218,46 @@ TEST(ParticleStress, PartsAddUp) {
                 1e-12 * std::abs(s.normal_force[n.contact]));
 }
 
+// The groups of a table hold every particle and every neck once, and again in "all".
+TEST(MomentStresses, Groups) {
+  const Snapshot s = packing(testing::cylinder_packing(1), 260).snapshot;
+  const MomentStresses m = moment_stresses(s);
+  EXPECT_LT(m.mismatch, 1e-14);
+  const auto particles = by_materials(s, mean_stresses(m.of_particles[std::size_t(StressPart::total)]));
+  ASSERT_EQ(particles.size(), 3u);
+  EXPECT_EQ(particles[0].name, "soft");
+  EXPECT_EQ(particles[2].name, "all");
+  EXPECT_EQ(particles[0].values.size() + particles[1].values.size(), s.id.size());
+  EXPECT_EQ(particles[2].values.size(), s.id.size());
+  EXPECT_EQ(particles[s.material[0]].values[0], mean_stress(s.stress[0]));
+  const auto necks = necks_by_kinds(s, m, StressPart::total, NeckSet::all);
+  ASSERT_EQ(necks.size(), 4u);
+  EXPECT_EQ(necks[1].name, "soft - hard");
+  EXPECT_EQ(necks[3].values.size(), m.necks.size());
+  ASSERT_FALSE(m.necks.empty());
+  // One neck that has come to a_max is in one set only.
+  Snapshot arrived = s;
+  arrived.phase[m.necks[0].contact] = std::uint8_t(NeckPhase::bonded);
+  std::size_t at_equilibrium = 0;
+  const MomentStresses n = moment_stresses(arrived);
+  for (const auto& neck : n.necks) at_equilibrium += neck.at_equilibrium;
+  EXPECT_GE(at_equilibrium, 1u);
+  EXPECT_EQ(necks_by_kinds(arrived, n, StressPart::total, NeckSet::short_of_equilibrium).back().values.size(),
+            n.necks.size() - at_equilibrium);
+  EXPECT_EQ(necks_by_kinds(unequal_pair(), moment_stresses(with_stress(unequal_pair())), StressPart::sintering,
+                           NeckSet::all)[1]
+                .values,
+            std::vector<double>{8 / M_PI});
+}
+
+// Particle stresses that do not belong to the contacts beside them.
+TEST(MomentStresses, RefusesWhatDoesNotFitTogether) {
+  Snapshot s = packing(testing::cylinder_packing(1), 260).snapshot;
+  moment_stresses(s);
+  s.wall_contact_force[0] *= 1.001;
+  EXPECT_NE(testing::message_of<RunError>([&] { moment_stresses(s); }).find("(6.9)"), std::string::npos);
+}
+
 // A rotated snapshot has the rotated stresses, the same mean and von Mises stresses and the same necks.
 TEST(ParticleStress, Rotation) {
   const Snapshot s = packing(testing::cylinder_packing(1), 260).snapshot;
@@ -263,6 +308,27 @@ TEST(StoredSnapshot, ReadsBack) {
     EXPECT_EQ(r.cell.velocity_gradient, s.cell.velocity_gradient);
     EXPECT_EQ(particle_stresses(r, StressPart::total), s.stress);
   }
+}
+
+// Results of before wall contacts were written.
+TEST(StoredSnapshot, RefusesADieWithoutWallContacts) {
+  const Snapshot s = packing(testing::cylinder_packing(1), 260).snapshot;
+  const testing::ScratchFolder folder;
+  ResultFile file(folder.path(), {"", "", "", {}}, 0);
+  file.add_snapshot(s);
+  Hdf5Writer old(folder / "old.h5");
+  const Hdf5Reader now(file.path());
+  old.attribute("/", "layout", std::uint64_t(1));
+  for (const char* part : {"materials", "particles", "contacts", "walls"})
+    old.copy(now, std::string("/snapshots/000000/") + part, std::string("/shot/") + part);
+  for (const char* name : {"time", "temperature", "pressure", "relative_density"})
+    old.attribute("/shot", name, now.attribute<double>("/snapshots/000000", name));
+  old.attribute("/shot", "stage", "hold");
+  old.commit(Durability::kill);
+  EXPECT_NE(testing::message_of<InputError>([&] {
+              read_snapshot(Hdf5Reader(folder / "old.h5"), "/shot");
+            }).find("no contacts with walls"),
+            std::string::npos);
 }
 
 // Each mistake of a file is named with the dataset.
