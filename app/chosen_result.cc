@@ -91,10 +91,12 @@ std::vector<dem::StoredMoment> chosen_moments(const std::vector<dem::StoredMomen
 }
 
 fs::path table_folder(const ChosenResult& command, const fs::path& file) {
-  const fs::path folder = command.folder.empty() ? file.parent_path() : fs::path(command.folder);
-  std::error_code failure;
+  return command.folder.empty() ? file.parent_path() : fs::path(command.folder);
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code failure;  // the first file that cannot be written says why
   fs::create_directories(folder, failure);
-  return folder;
 }
 
 }  // namespace densify::app

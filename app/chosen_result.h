@@ -30,7 +30,8 @@ std::filesystem::path result_file(const ChosenResult&);
 std::vector<dem::StoredMoment> chosen_moments(const std::vector<dem::StoredMoment>& all, const ChosenResult&,
                                               const std::filesystem::path& file);
 
-/// The folder of the tables, made.
+/// The folder of the tables; who writes them makes it, once there is something to write.
 std::filesystem::path table_folder(const ChosenResult&, const std::filesystem::path& file);
+void make_folder(const std::filesystem::path&);
 
 }  // namespace densify::app

@@ -97,6 +97,7 @@ int moduli_command(const ModuliCommand& command) {
     if (!command.quiet) print_viscous(v);
   }
   const std::filesystem::path folder = table_folder(command, path);
+  make_folder(folder);
   elastic.write_csv(folder, "moduli");
   dem::Hdf5Writer out(folder / "moduli.h5");
   out.attribute("/", "densify_version", std::string(version()));

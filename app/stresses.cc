@@ -94,6 +94,7 @@ int stresses_command(const StressesCommand& command) {
     write_each(out, "/moments/" + dem::six_digits(k), s, m);
     if (!command.quiet) print_moment(s, m);
   }
+  make_folder(folder);
   tables.write_csv(folder);
   tables.write_hdf5(out);
   out.commit(dem::Durability::kill);

@@ -80,5 +80,14 @@ refuses '--at-time 10 um: ' 'time' -- stresses r --at-time "10 um"
 refuses '--at-time 10 d: ' 'outside the result' -- stresses r --at-time "10 d"
 refuses '--at-density 0.99: ' 'outside the run' -- stresses r --at-density 0.99
 refuses '--set integration.mass_scaling=1: ' 'r is a result' -- stresses r --set integration.mass_scaling=1
+# A result of another version, without wall contacts: refused before any file is made.
+if command -v python3 >/dev/null && python3 -c 'import h5py' 2>/dev/null; then
+  mkdir old
+  cp r/result.h5 old/
+  python3 -c 'import h5py
+with h5py.File("old/result.h5", "r+") as f:
+  for s in f["snapshots"].values(): del s["wall_contacts"]'
+  refuses 'old/result.h5: ' 'run the scene again' -- stresses old --out new
+fi
 says 4 '/proc/none' '' -- stresses r --quiet --out /proc/none
 finish
