@@ -79,6 +79,7 @@ void read_particles(const Rows& rows, Snapshot& s) {
   s.stress = rows.stresses("stress");
   s.coordination = rows.list<std::uint32_t>("coordination");
   if (rows.has("local_density")) s.local_density = rows.list<double>("local_density");
+  if (rows.has("local_density")) s.local_density = rows.list<double>("local_density");
 }
 
 void read_contacts(const Rows& rows, Snapshot& s) {
@@ -106,6 +107,7 @@ void read_contacts(const Rows& rows, Snapshot& s) {
   s.elastic_displacement = rows.list<double>("elastic_displacement");
   s.since = rows.list<double>("since");
   s.phase = rows.list<std::uint8_t>("phase");
+  if (rows.has("flow_share")) s.flow_share = rows.list<double>("flow_share");
   for (const auto p : s.phase)
     if (p > std::uint8_t(NeckPhase::reactivating)) rows.refuse("phase", "a number without a phase");
   if (rows.has("flow_share")) s.flow_share = rows.list<double>("flow_share");

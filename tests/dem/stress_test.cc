@@ -280,8 +280,11 @@ TEST(ParticleStress, Rotation) {
 
 // What is read back is what was taken; branches come from positions again.
 TEST(StoredSnapshot, ReadsBack) {
-  for (const auto& shot : {packing(testing::periodic_packing(1), 260), packing(testing::cylinder_packing(1), 260)}) {
+  auto closing = testing::cylinder_packing(1);
+  closing.contact.sintering->closing_porosity = 0.3;
+  for (const auto& shot : {packing(testing::periodic_packing(1), 260), packing(closing, 260)}) {
     const Snapshot& s = shot.snapshot;
+    EXPECT_EQ(s.wall.empty(), s.local_density.empty());
     const testing::ScratchFolder folder;
     ResultFile file(folder.path(), {"", "", "", {}}, 0);
     file.add_snapshot(s);
@@ -293,6 +296,8 @@ TEST(StoredSnapshot, ReadsBack) {
     EXPECT_EQ(r.position, s.position);
     EXPECT_EQ(r.angular_velocity, s.angular_velocity);
     EXPECT_EQ(r.stress, s.stress);
+    EXPECT_EQ(r.local_density, s.local_density);
+    EXPECT_EQ(r.flow_share, s.flow_share);
     EXPECT_EQ(r.start, s.start);
     EXPECT_EQ(r.branch, s.branch);
     EXPECT_EQ(r.tangential_force, s.tangential_force);
