@@ -48,6 +48,18 @@ void add_cell(std::vector<double>& row, const Simulation& sim, HistoryMemory& me
   memory.cell_time = 0;
 }
 
+void add_energy_columns(std::vector<HistoryColumn>& columns) {
+  for (const char* name :
+       {"boundary_work", "sintering_work", "expansion_work", "stiffness_work", "stored_energy", "viscous_dissipation",
+        "damping_dissipation", "friction_work", "motion_work", "energy_residual"})
+    columns.push_back({std::string(name) + "_J", "J"});
+}
+
+void add_energies(std::vector<double>& row, const EnergySums& e) {
+  row.insert(row.end(), {e.boundary, e.sintering, e.expansion, e.stiffness, e.stored, e.viscous, e.damping, e.friction,
+                         e.motion, e.residual()});
+}
+
 /// Inertial number between two rows: D from the density, which knows nothing of thermal growth.
 double inertial_number(const Simulation& sim, const Measures& m, const HistoryMemory& memory) {
   const State& s = sim.state();
@@ -82,6 +94,8 @@ std::vector<double> HistoryMemory::numbers() const {
   std::vector<double> n{initial.size[0], initial.size[1], initial.size[2], initial.volume, density,  time,
                         punch_impulse,   punch_time,      error.bias,      error.initial,  cell_time};
   n.insert(n.end(), cell_impulse.begin(), cell_impulse.end());
+  const auto e = energy.numbers();
+  n.insert(n.end(), e.begin(), e.end());
   return n;
 }
 
@@ -95,6 +109,7 @@ HistoryMemory HistoryMemory::from(std::span<const double> n) {
   m.error = {n[8], n[9]};
   m.cell_time = n[10];
   std::copy_n(n.begin() + 11, 6, m.cell_impulse.begin());
+  m.energy = EnergySums::from(n.subspan(17).first<EnergySums::size>());
   return m;
 }
 
@@ -130,6 +145,7 @@ std::vector<HistoryColumn> history_columns(const Setup& setup) {
                        {"bottom_pressure_Pa", "Pa"},
                        {"lateral_pressure_Pa", "Pa"}});
   if (setup.cell_path) add_cell_columns(c, setup.cell_path->by_stress());
+  if (setup.energies) add_energy_columns(c);
   if (setup.integration.inertia == Inertia::equalised) c.push_back({"inertial_number", "1"});
   c.insert(c.end(), {{"unbalanced_force_ratio", "1"},
                      {"kinetic_over_elastic_energy", "1"},
@@ -172,6 +188,7 @@ std::vector<double> history_row(const Simulation& sim, const Measures& m, Histor
     row.insert(row.end(), {m.punch_pressure, mean, m.bottom_pressure, m.lateral_pressure});
   }
   if (setup.cell_path) add_cell(row, sim, memory);
+  if (setup.energies) add_energies(row, memory.energy);
   if (setup.integration.inertia == Inertia::equalised) row.push_back(s.control.inertial_number);
   row.insert(row.end(), {m.unbalanced_force_ratio, m.elastic_energy > 0 ? m.kinetic_energy / m.elastic_energy : unset,
                          m.damping_share, m.largest_overlap, s.last_step, double(s.steps)});

@@ -2,6 +2,7 @@
 // The columns of history.csv and how a row comes about; only columns of features that the scene uses.
 
 #include "dem/io/history_file.h"
+#include "dem/measure/energy_balance.h"
 #include "dem/measure/error_estimate.h"
 #include "dem/measure/measures.h"
 
@@ -16,12 +17,13 @@ struct HistoryMemory {
   double punch_time = 0;                 ///< [s]
   std::array<double, 6> cell_impulse{};  ///< integral of the driven cell's stress since the row before [Pa s]
   double cell_time = 0;                  ///< [s]
+  EnergySums energy;                     ///< where they are asked for
   ErrorEstimate error;
   double density_error = 0;  ///< estimated, of this row's density
 
   std::vector<double> numbers() const;
   static HistoryMemory from(std::span<const double> numbers);
-  static constexpr std::size_t size = 17;
+  static constexpr std::size_t size = 17 + EnergySums::size;
 };
 
 /// Names with units.

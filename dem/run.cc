@@ -139,6 +139,7 @@ class Run {
   CheckpointOwner owner_;
   HistoryMemory memory_;
   RunWatch watch_;  // without what the guards have seen in this call
+  EnergyBalance balance_;
   RunPosition position_;
   double last_snapshot_ = 0, next_row_ = 0, next_snapshot_ = 0;  // process time [s]
   double row_interval_ = 0, snapshot_interval_ = 0;
@@ -310,13 +311,17 @@ void Run::loop() {
     const std::size_t stage = schedule.stage_at(state.time);
     const bool breakpoint = state.steps == 0 || last || (stage > 0 && state.time == schedule.stage_end(stage - 1));
     const bool row = breakpoint || state.time >= next_row_ || state.time >= next_snapshot_;
-    if (look) {
+    const bool energies = sim_->setup().energies;
+    if (look && !energies) {
       const Stopwatch lists;
       sim_->refresh();
       list_seconds_ += watched * lists.seconds();
     }
     const Stopwatch forces;
-    sim_->evaluate(row ? &recording : nullptr);
+    if (energies)
+      balance_.evaluate(*sim_, recording, memory_.energy);  // with its lists
+    else
+      sim_->evaluate(row ? &recording : nullptr);
     if (look) force_seconds_ += watched * forces.seconds();
     if (punch) {
       memory_.punch_impulse += sim_->state().walls.normal_force()[*punch] * state.last_step;
@@ -330,7 +335,10 @@ void Run::loop() {
     if (row) record(recording, breakpoint);
     if (last) break;
     const Stopwatch motion;
-    sim_->move();
+    if (energies)
+      balance_.move(*sim_, recording, memory_.energy);
+    else
+      sim_->move();
     if (look) motion_seconds_ += watched * motion.seconds();
   }
 }
@@ -391,14 +399,14 @@ RunSummary run(const Scene& scene, const RunOptions& options) try {
 }
 
 std::string fingerprint(const Scene& scene) {
-  // FNV-1a over the lines that matter: output settings, guards and title may change between a run and its
-  // resumption.
+  // FNV-1a over the lines that matter: output settings but for the columns of the history, guards and title may change
+  // between a run and its resumption.
   std::uint64_t hash = 14695981039346656037ull;
   std::istringstream lines(scene.effective_text);
   bool counts = true;
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("[")) counts = !line.starts_with("[output") && !line.starts_with("[guards");
-    if (!counts || line.starts_with("title")) continue;
+    if ((!counts && !line.starts_with("energies")) || line.starts_with("title")) continue;
     for (unsigned char c : line + "\n") hash = (hash ^ c) * 1099511628211ull;
   }
   return std::to_string(hash);

@@ -71,6 +71,7 @@ struct Setup {
   Particles particles;                     ///< reference_radius, material, id, body.position set
   Cell cell;                               ///< periodic only
   std::optional<CellPath> cell_path = {};  ///< periodic only: what drives the cell through the stages of the schedule
+  bool energies = false;                   ///< of a driven cell, in the history
 };
 
 /// All that changes; written to a checkpoint bit for bit.

@@ -160,6 +160,7 @@ Setup make_setup(const Scene& scene, const GreenBody& body, int threads) {
   setup.integration.threads = std::min(threads, 1 + int(body.particles.size() / particles_per_thread));
   setup.cell.velocity_gradient = scene.velocity_gradient;
   setup.cell_path = scene.cell_path;
+  setup.energies = scene.output.energies;
   return setup;
 }
 

@@ -11,7 +11,7 @@
 
 namespace densify::dem {
 
-inline constexpr int checkpoint_format = 4;  ///< raised whenever the layout or the meaning of the state changes
+inline constexpr int checkpoint_format = 5;  ///< raised whenever the layout or the meaning of the state changes
 
 /// What a checkpoint belongs to.
 struct CheckpointOwner {

@@ -26,7 +26,7 @@ void visit(Section root, Scene& scene, ScenePlaces& places) {
   read_loads(root, scene);
   read_integration(root, scene, places);
   read_guards(root, scene);
-  read_output(root, scene);
+  read_output(root, scene, places);
 }
 
 /// A document in which every key of a scene is declared.

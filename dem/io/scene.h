@@ -47,6 +47,7 @@ struct OutputSettings {
   double snapshot_interval = unset;  ///< [s]; unset: at the ends of stages only
   double checkpoint_interval = 60;   ///< wall time between checkpoints [s]
   bool visualisation = true;         ///< ParaView files with every snapshot
+  bool energies = false;             ///< of a driven cell, in the history
   bool stress_fields = false;        ///< in them, the stresses in particles and necks with their parts
 };
 

@@ -156,6 +156,10 @@ void check_container(const Scene& scene, const ScenePlaces& places) {
 }
 
 void check_cell(const Scene& scene, const ScenePlaces& places) {
+  if (scene.output.energies && !scene.cell_path)
+    places.output->fail("energies",
+                        "adds up the work on a periodic cell that the stages drive, and none is; remove it, or give a "
+                        "stage pressure, stress or strain_rate");
   if (!scene.cell_path) return;
   if (!scene.velocity_gradient.isZero(0))
     places.cell->fail("velocity_gradient",

@@ -17,7 +17,7 @@ struct ScenePlaces {
   std::vector<Section> materials;   ///< in the order of Scene::materials
   std::vector<Section> interfaces;  ///< in the order of Scene::interfaces
   std::vector<Section> powders;     ///< in the order of the components
-  std::optional<Section> specimen, packing, import, perturbation, cell, walls, contact, process, integration;
+  std::optional<Section> specimen, packing, import, perturbation, cell, walls, contact, process, integration, output;
 };
 
 // Each declares and reads its part; a document for help is visited once with defaults.  All throw InputError.
@@ -31,7 +31,7 @@ void read_process(Section& root, Scene&, ScenePlaces&);
 void read_loads(Section& root, Scene&);
 void read_integration(Section& root, Scene&, ScenePlaces&);
 void read_guards(Section& root, Scene&);
-void read_output(Section& root, Scene&);
+void read_output(Section& root, Scene&, ScenePlaces&);
 
 /// What no single part can see: properties the contact model lacks, pressure without a punch, sintering that never
 /// starts, and the like.  Throws InputError at the key to mend.

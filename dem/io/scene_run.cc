@@ -119,15 +119,18 @@ void read_guards(Section& root, Scene& scene) {
       });
 }
 
-void read_output(Section& root, Scene& scene) {
+void read_output(Section& root, Scene& scene, ScenePlaces& places) {
   OutputSettings& s = scene.output;
   root.section("output", Need::defaulted, "what is written, and how often", [&](Section& section) {
+    places.output = section;
     section.quantity("history_interval", s.history_interval, dim::time, Range::positive(), Need::optional,
                      "process time between rows of history.csv; 1/400 of the process if absent");
     section.quantity("snapshot_interval", s.snapshot_interval, dim::time, Range::positive(), Need::optional,
                      "process time between snapshots; only at the ends of stages if absent");
     section.quantity("checkpoint_interval", s.checkpoint_interval, dim::time, Range::positive(), Need::optional,
                      "time on the clock between checkpoints");
+    section.flag("energies", s.energies,
+                 "columns of history.csv with the work on a driven cell, and where it goes; every step is recorded");
     section.flag("visualisation", s.visualisation, "files for ParaView with every snapshot");
     section.flag(
         "stress_fields", s.stress_fields,

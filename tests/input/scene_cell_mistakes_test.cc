@@ -39,6 +39,15 @@ TEST(CellMistakes, NoneInWhatACellIsDrivenBy) {
             "accepted");
 }
 
+TEST(CellMistakes, EnergiesOfACellThatNothingDrives) {
+  EXPECT_EQ(message_of(periodic("pressure = \"30 MPa\"", "[output]\nenergies = true")), "accepted");
+  EXPECT_EQ(message_of(periodic("", "[output]\nenergies = true")),
+            "scene.toml:21: output.energies: adds up the work on a periodic cell that the stages drive, and none is; "
+            "remove it, or give a stage pressure, stress or strain_rate");
+  EXPECT_EQ(message_of(periodic("pressure = \"30 MPa\"", "[output]\nenergies = 1")),
+            "scene.toml:21: output.energies: expected true or false (without quotes), found 1");
+}
+
 TEST(CellMistakes, ComponentDrivenTwice) {
   EXPECT_EQ(message_of(periodic("stress = { zz = \"-30 MPa\" }\nstrain_rate = { zz = \"0 1/s\" }")),
             "scene.toml:18: process.stage.1.strain_rate: and stress both drive zz; remove it from one of them");

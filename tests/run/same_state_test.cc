@@ -9,6 +9,7 @@
 #include "dem/io/state_image.h"
 #include "dem/run.h"
 #include "tests/dem/scratch_folder.h"
+#include "tests/dem/small_packings.h"
 
 using namespace densify;
 using namespace densify::dem;
@@ -116,6 +117,18 @@ TEST(Run, WithoutPoreClosureThereAreNoLocalDensities) {
     EXPECT_EQ(result.has("/snapshots/000003/particles/local_density"), is_closing);
     EXPECT_EQ(result.has("/snapshots/000003/contacts/flow_share"), is_closing);
   }
+}
+
+TEST(Run, EnergiesOnlyWhereAskedFor) {
+  const auto columns = [](bool energies) {
+    dem::Setup s = dem::testing::driven_packing(1);
+    s.energies = energies;
+    std::size_t count = 0;
+    for (const auto& c : history_columns(s)) count += c.name.ends_with("_J");
+    return count;
+  };
+  EXPECT_EQ(columns(false), 0u);
+  EXPECT_EQ(columns(true), 10u);
 }
 
 TEST(Run, WithoutSinteringThereAreNoNecks) {
