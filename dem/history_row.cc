@@ -15,11 +15,6 @@ void add_tensor(std::vector<double>& row, const Mat3& t) {
   for (auto [i, j] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}) row.push_back(t(i, j));
 }
 
-/// The highest pressure, or stress that drives the cell, of the process [Pa].
-double peak_load(const Simulation& sim) {
-  return sim.stress_driven() ? sim.setup().cell_path->peak_stress() : sim.setup().schedule.peak_pressure();
-}
-
 void add_cell_columns(std::vector<HistoryColumn>& columns, bool by_stress) {
   const auto add = [&](const std::string& before, const std::string& after, const std::string& unit) {
     for (const char* ij : tensor_names) columns.push_back({before + ij + after, unit});
@@ -63,7 +58,7 @@ void add_energies(std::vector<double>& row, const EnergySums& e) {
 /// Inertial number between two rows: D from the density, which knows nothing of thermal growth.
 double inertial_number(const Simulation& sim, const Measures& m, const HistoryMemory& memory) {
   const State& s = sim.state();
-  const double pressure = std::max(m.contact_pressure, 0.01 * peak_load(sim));
+  const double pressure = std::max(m.contact_pressure, pressure_floor(sim.peak_load()));
   const double rate = std::abs(m.relative_density / memory.density - 1) / (s.time - memory.time);
   double mass = 0;
   for (const Body& b : s.particles.body) mass += 1 / b.inverse_mass;
@@ -83,7 +78,7 @@ double error_at_row(const Simulation& sim, const Measures& m, HistoryMemory& mem
                              : ErrorEstimate::share(inertial_number(sim, m, memory), !s.contacts.neck.empty());
     e.advance(memory.density, m.relative_density, share);
   }
-  const double peak = peak_load(sim);
+  const double peak = sim.peak_load();
   const double relieved = peak > 0 && !s.contacts.neck.empty() ? 1 - sim.load().size / peak : 0.0;
   return e.error(m.relative_density, relieved, s.particles.size());
 }

@@ -107,7 +107,7 @@ Simulation::Simulation(Setup setup)
   }
   if (equalised()) {
     control_ = step_control(setup_.integration, setup_.schedule);
-    if (stress_driven()) control_.peak_pressure = setup_.cell_path->peak_stress();
+    control_.peak_pressure = peak_load();
     if (const auto& sintering = setup_.contact.sintering) {
       control_.transition = sintering->relaxation_time;
       for (std::uint8_t a = 0; a < table_.materials(); ++a)

@@ -168,6 +168,8 @@ class Simulation {
   PoreClosure pores() const;
   /// The load of the process now.
   ProcessLoad load() const;
+  /// The largest pressure, or stress that drives the cell, of the whole process [Pa].
+  double peak_load() const;
   /// What drives a component of the cell now, in the order of tensor_places.
   CellGoal cell_goal(std::size_t component) const;
   double real_mass(std::size_t p) const;  ///< [kg]

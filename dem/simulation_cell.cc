@@ -26,6 +26,10 @@ double Simulation::pressure() const {
   return sum / 3;
 }
 
+double Simulation::peak_load() const {
+  return stress_driven() ? setup_.cell_path->peak_stress() : setup_.schedule.peak_pressure();
+}
+
 ProcessLoad Simulation::load() const {
   const Schedule& schedule = setup_.schedule;
   if (!stress_driven()) return {pressure(), std::abs(schedule.pressure_rate(state_.time))};

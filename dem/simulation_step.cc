@@ -147,7 +147,8 @@ void Simulation::equalise_inertia() {
   if (pressed) equalise_punch();
   if (stress_driven()) weigh_cell(equalised_cell_stiffness(), stiffness_.next_step);
   if (state_.steps % control_interval != 0) return;
-  const double pressure = std::max(contact_pressure(state_.particles, stiffness_), control_.pressure_floor());
+  const double pressure =
+      std::max(contact_pressure(state_.particles, stiffness_), pressure_floor(control_.peak_pressure));
   double growth = 0;  // mean over the materials
   if (state_.last_step > 0)
     for (const double e : expansion_step_) growth += e / state_.last_step / double(expansion_step_.size());

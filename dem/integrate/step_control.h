@@ -21,9 +21,6 @@ struct StepControl {
   double transition = 0;                        ///< duration of activation and deactivation [s]
   std::vector<double> activation_temperatures;  ///< of the pairs that sinter [K]
 
-  /// Least pressure that inertia is measured against [Pa].
-  double pressure_floor() const { return 0.01 * peak_pressure; }
-
   static constexpr double unset_measure = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -32,6 +29,11 @@ struct ControlState {
   Mat3 strain_rate = Mat3::Zero();  ///< running mean over some twenty steps [1/s]
   double inertial_number = 0;
 };
+
+/// Least pressure that inertia is measured against, of the largest load of the process [Pa].
+inline double pressure_floor(double peak_load) {
+  return 0.01 * peak_load;
+}
 
 /// Steps between two evaluations of the inertial number.
 inline constexpr std::uint64_t control_interval = 5;

@@ -156,6 +156,24 @@ void write_contacts_vtp(const std::filesystem::path& path, const Snapshot& s, St
                    Durability::kill);
 }
 
+void write_cell_vtp(const std::filesystem::path& path, const Cell& cell) {
+  std::vector<Vec3> ends;
+  for (int along = 0; along < 3; ++along)
+    for (const int a : {0, 1})
+      for (const int b : {0, 1}) {
+        const Vec3 from = cell.origin + a * cell.h.col((along + 1) % 3) + b * cell.h.col((along + 2) % 3);
+        ends.push_back(from);
+        ends.push_back(from + cell.h.col(along));
+      }
+  const std::size_t edges = ends.size() / 2;
+  write_atomically(
+      path,
+      {poly_data("NumberOfPoints=\"" + std::to_string(ends.size()) + "\" NumberOfVerts=\"0\" NumberOfLines=\"" +
+                     std::to_string(edges) + "\"",
+                 "<Points>\n" + data_array("Points", flat(ends), 3) + "</Points>\n" + cells("Lines", edges, 2))},
+      Durability::kill);
+}
+
 Visualisation::Visualisation(std::filesystem::path folder, std::uint64_t pictures, StressFields stresses)
     : folder_(std::move(folder)), stresses_(stresses) {
   std::error_code failure;
@@ -185,10 +203,12 @@ void Visualisation::write_collection(const std::string& what) const {
 void Visualisation::add(const Snapshot& snapshot) {
   write_particles_vtp(folder_ / file_name("particles", times_.size()), snapshot, stresses_);
   write_contacts_vtp(folder_ / file_name("contacts", times_.size()), snapshot, stresses_);
+  if (snapshot.cell.periodic) write_cell_vtp(folder_ / file_name("cell", times_.size()), snapshot.cell);
   char digits[32];
   times_.emplace_back(digits, std::to_chars(digits, digits + sizeof digits, snapshot.moment.time).ptr);
   write_collection("particles");
   write_collection("contacts");
+  if (snapshot.cell.periodic) write_collection("cell");
 }
 
 }  // namespace densify::dem

@@ -1,6 +1,6 @@
 #pragma once
-// Pictures for ParaView: .vtp files of particles (points) and contacts (lines) and the .pvd collections that give them
-// their times.  Written by hand in VTK's XML format, so that nothing has to be installed.
+// Pictures for ParaView: .vtp files of particles (points), contacts (lines) and the periodic cell (lines) and the .pvd
+// collections that give them their times.  Written by hand in VTK's XML format, so that nothing has to be installed.
 
 #include <filesystem>
 
@@ -21,7 +21,11 @@ void write_particles_vtp(const std::filesystem::path&, const Snapshot&, StressFi
 /// without neck, and phase.  Throws FileError.
 void write_contacts_vtp(const std::filesystem::path&, const Snapshot&, StressFields);
 
-/// The folder of all pictures of a run: particles.pvd, contacts.pvd and the files they list.
+/// A periodic cell as its twelve edges.  Throws FileError.
+void write_cell_vtp(const std::filesystem::path&, const Cell&);
+
+/// The folder of all pictures of a run: particles.pvd, contacts.pvd, with a periodic cell cell.pvd, and the files they
+/// list.
 class Visualisation {
  public:
   /// Starts pictures in a folder, which is made, or goes on after the first `pictures` of it.

@@ -49,6 +49,24 @@ TEST(Visualisation, ArraysAreLengthAndContentInBase64) {
             std::string::npos);
 }
 
+// A periodic cell has its twelve edges beside the particles, a specimen without one has no such files.
+TEST(Visualisation, EdgesOfAPeriodicCell) {
+  const ScratchFolder folder;
+  Snapshot s = pair(0);
+  Visualisation(folder / "free", 0, StressFields::left_out).add(s);
+  EXPECT_FALSE(std::filesystem::exists(folder / "free/cell.pvd"));
+  s.cell.periodic = true;
+  s.cell.h = 4 * Mat3::Identity();
+  Visualisation(folder / "periodic", 0, StressFields::left_out).add(s);
+  EXPECT_NE(content_of(folder / "periodic/cell.pvd").find("file=\"cell_000000.vtp\""), std::string::npos);
+  const std::string cell = content_of(folder / "periodic/cell_000000.vtp");
+  EXPECT_NE(cell.find("NumberOfPoints=\"24\" NumberOfVerts=\"0\" NumberOfLines=\"12\""), std::string::npos);
+  // The first edge, (0 0 0) to (4 0 0), after the length 576 = 40 02 00 ..: 4.0 is 00 00 00 00 00 00 10 40.
+  EXPECT_NE(cell.find("Name=\"Points\" NumberOfComponents=\"3\" format=\"binary\">"
+                      "QAIAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAQQAAA"),
+            std::string::npos);
+}
+
 // Without necks there is no array for them.
 TEST(Visualisation, OnlyFeaturesInUse) {
   const ScratchFolder folder;
