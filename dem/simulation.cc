@@ -248,8 +248,10 @@ void Simulation::measure_pores() {
   const double density = powder_density(state_.particles, room);
   LocalDensity& local = state_.local_density;
   if (local.of.empty() || local.builds != state_.contacts.builds ||
-      std::abs(density / local.powder - 1) > change * std::max(least, 1 - density))
+      std::abs(density / local.powder - 1) > change * std::max(least, 1 - density)) {
+    require_finite(state_);  // the search for the cells would end in a place that is not there
     local = {local_densities(state_.particles, state_.cell, room, state_.contacts), density, state_.contacts.builds};
+  }
   pore_scale_ = density / local.powder;
 }
 

@@ -265,8 +265,9 @@ CellDrive read_cell_drive(const Hdf5Reader& file) {
 
 namespace {
 
-LocalDensity read_local_density(const Hdf5Reader& file, std::size_t particles) {
+LocalDensity read_local_density(const Hdf5Reader& file, const ContactModel& model, std::size_t particles) {
   if (!file.has("/state/local_density")) return {};
+  require(model.sintering && !std::isnan(model.sintering->closing_porosity), "/state/local_density");
   return {read_list<double>(file, "/state/local_density", particles),
           read_list<double>(file, "/state/local_density_of_powder", 1)[0],
           file.attribute<std::uint64_t>("/state", "local_density_builds")};
@@ -300,7 +301,7 @@ State read_state(const Hdf5Reader& file, const Simulation& simulation) {
   s.cell.origin = read_vector(file, "/state/cell_origin");
   s.cell.velocity_gradient = read_matrix(file, "/state/cell_velocity_gradient");
   s.cell_drive = read_cell_drive(file);
-  s.local_density = read_local_density(file, s.particles.size());
+  s.local_density = read_local_density(file, simulation.setup().contact, s.particles.size());
   s.expansion = read_list<double>(file, "/state/expansion", now.expansion.size());
   s.active_since = read_list<double>(file, "/state/active_since", now.active_since.size());
   const auto clock = read_list<double>(file, "/state/clock", 5);

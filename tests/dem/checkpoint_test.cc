@@ -170,6 +170,17 @@ TEST(Checkpoint, MissingFileNamed) {
   EXPECT_NE(message.find("no checkpoint"), std::string::npos);
 }
 
+// Local densities in a scene whose pores do not resist are no state of it.
+TEST(Checkpoint, LocalDensitiesOfNoPoreClosureRefused) {
+  const ScratchFolder folder;
+  Simulation closing(closing_packing(1)), open(driven_packing(1));
+  run_steps(closing, 200);
+  ASSERT_FALSE(closing.state().local_density.of.empty());
+  write_checkpoint(folder / "c", closing, {}, owner);
+  const auto message = message_of<InputError>([&] { read_checkpoint(folder / "c", open, owner); });
+  EXPECT_NE(message.find("/state/local_density does not fit"), std::string::npos) << message;
+}
+
 TEST(Checkpoint, OfAnotherSceneRefused) {
   const ScratchFolder folder;
   Simulation simulation(cylinder_packing(1));
