@@ -6,11 +6,13 @@
 
 #include "app/bench.h"
 #include "app/check.h"
+#include "app/command_line.h"
 #include "app/moduli.h"
 #include "app/run.h"
 #include "app/stresses.h"
 #include "app/trade.h"
 #include "app/trade_ladder.h"
+#include "app/voxel_program.h"
 #include "base/check.h"
 #include "base/nearest.h"
 #include "base/version.h"
@@ -18,28 +20,11 @@
 
 namespace {
 
-constexpr const char* exit_codes =
-    "Exit codes: 0 done; 1 internal error; 2 bad input; 3 run stopped by a guard; 4 file error; 5 interrupted, "
-    "checkpoint written.";
-
-/// Options of the commands that read a result.
-void add_choice(CLI::App& command, densify::app::ChosenResult& result) {
-  command.add_option("RESULT", result.source, "A folder of results, a result.h5, or a scene, which is run first")
-      ->required();
-  command.add_option("--at-time", result.times, "The snapshot nearest to a time, e.g. \"20 min\"; again for each")
-      ->take_all();
-  command.add_option("--at-density", result.densities, "The snapshot nearest to a relative density; again for each")
-      ->take_all();
-  command.add_option("--out", result.folder, "Folder of the tables; without it that of the result");
-  command.add_option("--set", result.overrides, "path.to.key=value of a scene, again for each")->take_all();
-  command.add_option("--threads", result.threads, "Threads of a scene's run")->check(CLI::Range(1, 1024));
-  command.add_flag("--quiet", result.quiet, "Tables only");
-}
-
 int run_main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "voxel-moduli") densify::app::become_voxel_program(argc, argv);
   CLI::App app{"Densify: how a powder becomes a solid part under heat and pressure."};
   app.name("densify");
-  app.footer(exit_codes);
+  app.footer(densify::app::exit_codes);
   app.set_version_flag(
       "--version", "densify " + std::string(densify::version()) + " (" + std::string(densify::git_revision()) + ")");
   app.require_subcommand(1);
@@ -96,7 +81,7 @@ int run_main(int argc, char** argv) {
   densify::app::ModuliCommand moduli;
   CLI::App* moduli_command = app.add_subcommand(
       "moduli", "Elastic moduli, viscosities and sintering stress of the contact network at moments of a result");
-  add_choice(*moduli_command, moduli);
+  densify::app::add_choice(*moduli_command, moduli);
   moduli_command
       ->add_option("--model", moduli.models,
                    "Contact model: normal_spring, bonded_neck, neck_beam or series; again for each; without it all")
@@ -118,7 +103,9 @@ int run_main(int argc, char** argv) {
   densify::app::StressesCommand stresses;
   CLI::App* stresses_command = app.add_subcommand(
       "stresses", "Stress in necks, particles and the specimen at moments of a result: tables and histograms");
-  add_choice(*stresses_command, stresses);
+  densify::app::add_choice(*stresses_command, stresses);
+
+  app.add_subcommand("voxel-moduli", "Elastic moduli by finite elements on voxels (deal.II, PETSc); its own --help");
 
   CLI::App* ladder_command =
       app.add_subcommand("help-ladder", "Every key of a ladder with unit, range, default and meaning");
@@ -153,21 +140,5 @@ int run_main(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  auto fail = [](const std::exception& error, int code) {
-    std::fprintf(stderr, "densify: %s\n", error.what());
-    return code;
-  };
-  try {
-    return run_main(argc, argv);
-  } catch (const densify::InputError& error) {
-    return fail(error, 2);
-  } catch (const densify::RunError& error) {
-    return fail(error, 3);
-  } catch (const densify::FileError& error) {
-    return fail(error, 4);
-  } catch (const densify::Interrupted& error) {
-    return fail(error, 5);
-  } catch (const std::exception& error) {
-    return fail(error, 1);
-  }
+  return densify::app::guarded([&] { return run_main(argc, argv); });
 }

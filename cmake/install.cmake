@@ -10,6 +10,9 @@ endforeach()
 install(TARGETS densify_flags densify_base densify_dem EXPORT DensifyTargets INCLUDES DESTINATION ${include_dir})
 install(EXPORT DensifyTargets NAMESPACE densify:: DESTINATION ${package_dir})
 install(TARGETS densify)
+if(DENSIFY_FEM)
+  install(TARGETS densify-voxel-moduli)
+endif()
 install(DIRECTORY base dem DESTINATION ${include_dir} FILES_MATCHING PATTERN *.h)
 install(DIRECTORY dem/material/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/densify/materials OPTIONAL
         FILES_MATCHING PATTERN *.toml)  # OPTIONAL: tests/install counts what arrives

@@ -8,7 +8,7 @@ mkdir -p "$2/elsewhere" "$2/bin" "$2/house"
 scratch=$(readlink -f "$2")
 house=$scratch/house
 calls=$scratch/calls
-mkdir -p "$house/base" "$house/dem" "$house/app" "$house/cmake"
+mkdir -p "$house/base" "$house/dem" "$house/fem" "$house/coupling" "$house/app" "$house/cmake"
 touch "$house/CMakeLists.txt" "$house/CMakePresets.json" "$house/dem/law.h"
 cp "$1" "$house/densify"
 ln -s "$house/densify" "$scratch/bin/linked"
@@ -54,12 +54,17 @@ holds err 'missing Debian packages: g++ cmake ninja-build libeigen3-dev'
 holds err 'DENSIFY_NO_INSTALL forbids'
 [ ! -s "$calls" ] || fail "something was called"
 
+# Who needs the particles alone need not install the finite elements.
+DENSIFY_NO_INSTALL=1 DENSIFY_PRESET=dem-only call 2 run scene.toml
+lacks err 'deal.ii'
+
 # One package is there: lists read once, before the others are installed, which are announced; the tests' are not among
 # them; then the program gets its arguments in the caller's folder and has the screen to itself.
 echo cmake >"$scratch/installed"
 call 0 run 'a scene.toml' --set x=1
 holds calls '^apt-get .*update$'
 holds calls '^apt-get .*install -y --no-install-recommends g++ ninja-build libeigen3-dev'
+holds calls 'libdeal.ii-dev openmpi-bin$'
 lacks calls 'gtest'
 lacks calls 'install.* cmake'
 holds err 'installing the Debian packages g++ ninja-build'
@@ -76,7 +81,7 @@ call 0 help
 DENSIFY_NO_INSTALL=1
 export DENSIFY_NO_INSTALL
 echo "g++ cmake ninja-build libeigen3-dev libhdf5-dev libtomlplusplus-dev libcli11-dev libfmt-dev voro++-dev
-libgtest-dev python3-numpy python3-h5py" | tr ' ' '\n' >"$scratch/installed"
+libdeal.ii-dev openmpi-bin libgtest-dev python3-numpy python3-h5py" | tr ' ' '\n' >"$scratch/installed"
 touch "$house/dem/law.h"
 call 0 help
 holds calls '^cmake --build .*build/release --target densify'

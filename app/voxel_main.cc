@@ -1,0 +1,58 @@
+// densify voxel-moduli: the program with deal.II and PETSc; densify starts it.
+
+#include <deal.II/base/mpi.h>
+
+#include <cstdio>
+
+#include "app/command_line.h"
+#include "app/voxel_moduli.h"
+#include "base/check.h"
+
+namespace {
+
+int run_main(int argc, char** argv) {
+  densify::app::VoxelCommand command;
+  CLI::App app{
+      "Elastic moduli of a packing in a periodic cell, or of spheres at random, by finite elements on voxels."};
+  app.name("densify voxel-moduli");
+  app.footer(std::string("densify voxel-moduli --ranks N runs it on N processes.\n") + densify::app::exit_codes);
+  densify::app::add_choice(app, command);
+  app.get_option("RESULT")->required(false);
+  app.add_option("--voxels", command.voxels, "Voxels along the longest edge, again for each; without it 32, 48, 64")
+      ->check(CLI::Range(4, 512))
+      ->take_all();
+  app.add_flag("--pores", command.pores, "The spheres are the pores of the body");
+  app.add_option("--tolerance", command.tolerance, "Of the balance of forces; without it 1e-6")
+      ->check(CLI::Range(1e-12, 1e-2));
+  app.add_option("--spheres", command.spheres,
+                 "Instead of a result: random overlapping spheres, \"solid\" or \"pores\"")
+      ->check(CLI::IsMember({"solid", "pores"}));
+  app.add_option("--solid-fraction", command.fractions, "Of the random spheres' body, again for each")
+      ->check(CLI::Range(0.01, 0.999))
+      ->take_all();
+  app.add_option("--realisations", command.realisations, "Of each; without it 5")->check(CLI::Range(1, 10000));
+  app.add_option("--box", command.box, "Edge of the random spheres' cell over their radius; without it 12")
+      ->check(CLI::Range(2.0, 1000.0));
+  app.add_option("--poissons-ratio", command.poissons_ratio,
+                 "Of the random spheres' solid, of modulus 1; without it 0.3")
+      ->check(CLI::Range(-0.9, 0.49));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    int rank;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    if (rank > 0) return error.get_exit_code() == 0 ? 0 : 2;
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return densify::app::voxel_command(command, MPI_COMM_WORLD);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int own_argc = 1;  // PETSc must not read this program's options
+  char** own_argv = argv;
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(own_argc, own_argv, 1);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0) std::fclose(stderr);  // one rank complains for all
+  return densify::app::guarded([&] { return run_main(argc, argv); });
+}

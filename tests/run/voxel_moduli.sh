@@ -1,0 +1,81 @@
+#!/bin/sh
+# densify voxel-moduli on a result, on a scene and on random spheres, on one rank and two, and the mistakes of its user:
+# one sentence each, no file made.  usage: voxel_moduli.sh DENSIFY FOLDER_OF_SCENES WORK_FOLDER
+set -eu
+densify=$1 scenes=$2 work=$3
+. "$scenes/support.sh"
+
+# 27 spheres of a simple cubic crystal in a periodic cell, some of them larger, sintering from the start.
+awk 'BEGIN { print "x,y,z,radius,material"
+  for (i = 0; i < 3; i++) for (j = 0; j < 3; j++) for (k = 0; k < 3; k++)
+    printf "%g,%g,%g,%g,NiAl\n", 4 * i + 2, 4 * j + 2, 4 * k + 2, 2.02 + 0.02 * ((i + 2 * j + k) % 3) }' >periodic.csv
+cat >periodic.toml <<'END'
+[materials.NiAl]
+library = "NiAl"
+[specimen]
+shape = "periodic"
+[specimen.import]
+file = "periodic.csv"
+length_unit = "1 um"
+[specimen.cell]
+a = ["12 um", "0 um", "0 um"]
+b = ["0 um", "12 um", "0 um"]
+c = ["0 um", "0 um", "12 um"]
+[specimen.cell.velocity_gradient]
+x = ["-1e-4 1/s", "0 1/s", "0 1/s"]
+y = ["0 1/s", "-1e-4 1/s", "0 1/s"]
+z = ["0 1/s", "0 1/s", "-1e-4 1/s"]
+[contact.sintering]
+damping_ratio = 0.3
+[process]
+start_temperature = "1300 degC"
+[[process.stage]]
+name = "hold"
+duration = "5 min"
+[integration]
+mass_scaling = 1e17
+[output]
+snapshot_interval = "100 s"
+visualisation = false
+END
+
+# A scene is run first; its result then needs no run.  The solid fraction of the voxels is the relative density
+# (in a crystal many voxels are equally far from a sphere, and come together).
+run_code voxel-moduli periodic.toml --out r --quiet --voxels 11 --voxels 17
+[ "$code" -eq 0 ] || fail "voxel-moduli of a scene: $(cat "$err")"
+[ "$(wc -l <r/voxel_moduli.csv)" -eq 5 ] || fail "not four snapshots: $(wc -l <r/voxel_moduli.csv)"
+[ "$(wc -l <r/voxel_resolutions.csv)" -eq 9 ] || fail "not four snapshots of two resolutions"
+[ -s r/voxel_moduli.h5 ] || fail "no voxel_moduli.h5"
+awk -F, 'NR == 1 { for (c = 1; c <= NF; ++c) at[$c] = c; next }
+  { d = $at["solid_fraction_1"] - $at["relative_density_1"]; if (d < -0.02 || d > 0.02) exit 1
+    if ($at["drawn_fraction_1"] > $at["relative_density_1"] + 0.02) exit 1 }' r/voxel_resolutions.csv ||
+  fail "solid fraction and relative density differ: $(cut -d, -f1-8 r/voxel_resolutions.csv)"
+
+# Two ranks give the same moduli, to the tolerance of the solution.
+run_code voxel-moduli r --at-time "300 s" --voxels 18 --out two --ranks 2 --quiet
+[ "$code" -eq 0 ] || fail "two ranks: $(cat "$err")"
+run_code voxel-moduli r --at-time "300 s" --voxels 18 --out one --quiet
+[ "$code" -eq 0 ] || fail "one rank: $(cat "$err")"
+same() { awk -F, 'NR == 1 { for (c = 1; c <= NF; ++c) if ($c == "youngs_modulus_Pa") k = c } END { printf "%.5g\n", $k }' "$1"; }
+[ "$(same one/voxel_moduli.csv)" = "$(same two/voxel_moduli.csv)" ] || fail "ranks: $(same one/voxel_moduli.csv), $(same two/voxel_moduli.csv)"
+
+run_code voxel-moduli --spheres pores --solid-fraction 0.8 --realisations 2 --voxels 12 --out spheres
+[ "$code" -eq 0 ] || fail "random spheres: $(cat "$err")"
+[ "$(wc -l <spheres/voxel_moduli.csv)" -eq 3 ] || fail "not two realisations"
+
+# Mistakes.
+refuses 'takes a RESULT or --spheres, one of the two' '' -- voxel-moduli --voxels 8
+refuses '--spheres needs --solid-fraction' '' -- voxel-moduli --spheres solid --out none
+refuses '--spheres needs --out' '' -- voxel-moduli --spheres solid --solid-fraction 0.7
+refuses 'resists nothing; take more voxels or a denser packing' '' -- \
+  voxel-moduli --quiet --spheres solid --solid-fraction 0.1 --voxels 12 --out none
+refuses 'outside the run' '' -- voxel-moduli r --at-density 0.99 --out none
+refuses 'no such result' '' -- voxel-moduli missing.h5 --out none
+refuses '--ranks none' 'from 1 to 4096' -- voxel-moduli r --ranks none --out none
+run_code voxel-moduli periodic.toml --ranks 2 --out none
+{ [ "$code" -eq 2 ] && grep -q 'several ranks take a result that is there' "$err"; } || fail "a scene on two ranks: $(cat "$err")"
+cp "$scenes/lattice.csv" "$scenes/lattice.toml" .
+run_code run lattice.toml --quiet --out die
+[ "$code" -eq 0 ] || fail "the lattice: $(cat "$err")"
+refuses 'die/result.h5: ' 'need a periodic cell' -- voxel-moduli die --voxels 8 --out none
+finish
