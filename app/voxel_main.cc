@@ -21,7 +21,8 @@ int run_main(int argc, char** argv) {
   app.add_option("--voxels", command.voxels, "Voxels along the longest edge, again for each; without it 32, 48, 64")
       ->check(CLI::Range(4, 512))
       ->take_all();
-  app.add_flag("--pores", command.pores, "The spheres are the pores of the body");
+  app.add_flag("--pores", command.pores,
+               "The body is what the packing leaves free: its solid fraction is 1 less the relative density");
   app.add_option("--tolerance", command.tolerance, "Of the balance of forces; without it 1e-6")
       ->check(CLI::Range(1e-12, 1e-2));
   app.add_option("--spheres", command.spheres,
@@ -53,6 +54,11 @@ int main(int argc, char** argv) {
   int own_argc = 1;  // PETSc must not read this program's options
   char** own_argv = argv;
   dealii::Utilities::MPI::MPI_InitFinalize mpi(own_argc, own_argv, 1);
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0) std::fclose(stderr);  // one rank complains for all
-  return densify::app::guarded([&] { return run_main(argc, argv); });
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+    std::freopen("/dev/null", "w", stderr);  // one rank complains for all
+  const int code = densify::app::guarded([&] { return run_main(argc, argv); });
+  // Input and a solution that fails are the same on all ranks; what is not must not let the others wait for ever.
+  if (code != 0 && code != 2 && code != 3 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    MPI_Abort(MPI_COMM_WORLD, code);
+  return code;
 }

@@ -102,6 +102,7 @@ class Study {
     return {limit[0], limit[1]};
   }
 
+  /// After every body, so that a later one takes nothing away.
   void write(const std::filesystem::path& folder) const {
     if (!writes()) return;
     make_folder(folder);
@@ -113,6 +114,8 @@ class Study {
     resolutions_.write_hdf5(out, "/resolutions");
     limits_.write_hdf5(out, "/moduli");
     out.commit(dem::Durability::kill);
+  }
+  void say_where(const std::filesystem::path& folder) const {
     if (speaks())
       fmt::print("\ntables in {} and, beside it, voxel_resolutions.csv, voxel_moduli.h5\n",
                  (folder / "voxel_moduli.csv").string());
@@ -133,12 +136,23 @@ class Study {
   ResultTable resolutions_{std::vector<std::string>{"body"}}, limits_{std::vector<std::string>{"body"}};
 };
 
-Body grown(const fem::LevelSet& level, double fraction, const Mat3& cell, int n, bool pores) {
-  const double covered = pores ? 1 - fraction : fraction;
-  const double shift = level.shift_for(covered);
-  const double width = cell.colwise().norm().maxCoeff() / n;
+Body grown(const fem::LevelSet& level, const dem::SpecimenNetwork& s, int n, bool pores) {
+  const double shift = level.shift_for(s.relative_density);
+  const double width = s.cell.h.colwise().norm().maxCoeff() / n;
   return {pores ? level.complement(shift) : level.body(shift), pores ? 1 - level.fraction(0) : level.fraction(0),
           shift / width};
+}
+
+/// Why a moment has no body to show; empty when it has.
+std::string obstacle(const dem::SpecimenNetwork& s) {
+  try {
+    dem::require_percolation(s, dem::structure_of(s));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  if (s.relative_density < 1) return "";
+  return fmt::format("at {:.6g} s the relative density is {:.4f}: no pores are left that voxels could show", s.time,
+                     s.relative_density);
 }
 
 void study_result(const VoxelCommand& command, Study& study) {
@@ -151,31 +165,44 @@ void study_result(const VoxelCommand& command, Study& study) {
     throw InputError(path.string() +
                      ": voxel elements need a periodic cell, and this is a specimen between walls or free; "
                      "densify moduli takes the inner region of one between walls");
+  // All moments are looked at before the first is solved.
+  std::vector<dem::SpecimenNetwork> bodies;
+  std::string why;
   for (const dem::StoredMoment& moment : chosen_moments(dem::stored_moments(file), command, path)) {
-    const dem::SpecimenNetwork s = dem::read_network(file, scene, moment);
-    dem::require_percolation(s, dem::structure_of(s));
-    if (!(s.relative_density < 1))
-      throw InputError(
-          fmt::format("at {:.6g} s the relative density is {:.4f}: nothing is left of the pores that voxels "
-                      "could show; choose moments by --at-time or --at-density",
-                      s.time, s.relative_density));
-    const auto solids = coupling::elastic_solids(scene.materials, s.temperature);
+    bodies.push_back(dem::read_network(file, scene, moment));
+    const std::string left_out = obstacle(bodies.back());
+    if (left_out.empty()) continue;
+    if (command.asked()) throw InputError(left_out);
+    why = left_out;
+    bodies.pop_back();
+    if (study.speaks()) fmt::print("left out: {}\n", left_out);
+  }
+  if (bodies.empty()) throw InputError(why);
+  for (const dem::SpecimenNetwork& s : bodies) {
+    auto solids = coupling::elastic_solids(scene.materials, s.temperature);
+    if (command.pores) {
+      const std::uint8_t m = s.material.front();
+      if (std::any_of(s.material.begin(), s.material.end(), [&](auto k) { return k != m; }))
+        throw InputError(path.string() + ": --pores takes a packing of one material");
+      solids = {solids[m]};
+    }
     if (study.speaks()) {
       fmt::print("\n{:.6g} s, {:.1f} K, relative density {:.4f}\n", s.time, s.temperature, s.relative_density);
       constexpr double fewest = 4;
       const double across = coupling::voxels_across_neck(s, command.voxels.front());
-      if (across < fewest)
+      if (!command.pores && !(across >= fewest))
         fmt::print("warning: the mean neck is {:.1f} voxels wide at {} voxels, fewer than 4: too coarse to trust\n",
                    across, command.voxels.front());
     }
-    study.add(
-        fmt::format("{:.6g} s", s.time),
-        {{"time", "s", s.time}, {"temperature", "K", s.temperature}, {"relative_density", "1", s.relative_density}},
-        solids, [&](int n) {
-          return grown(coupling::packing_level_set(s, n), s.relative_density, s.cell.h, n, command.pores);
-        });
+    study.add(fmt::format("{:.6g} s", s.time),
+              {{"time", "s", s.time},
+               {"temperature", "K", s.temperature},
+               {"relative_density", "1", s.relative_density},
+               {"coarsest_voxels_across_neck", "1", coupling::voxels_across_neck(s, command.voxels.front())}},
+              solids, [&](int n) { return grown(coupling::packing_level_set(s, n), s, n, command.pores); });
+    study.write(table_folder(command, path));
   }
-  study.write(table_folder(command, path));
+  study.say_where(table_folder(command, path));
 }
 
 void study_spheres(const VoxelCommand& command, Study& study) {
@@ -190,6 +217,7 @@ void study_spheres(const VoxelCommand& command, Study& study) {
           command.spheres, {{"relative_density", "1", fraction}, {"seed", "1", double(seed)}}, solids, [&](int n) {
             return Body{boolean_spheres(model, fraction, command.box, n, unsigned(seed)), std::nan(""), std::nan("")};
           });
+      study.write(command.folder);
       youngs.push_back(e.value);
       poisson.push_back(nu.value);
     }
@@ -204,7 +232,7 @@ void study_spheres(const VoxelCommand& command, Study& study) {
       fmt::print("\n{} spheres, solid fraction {}: {}, {} (standard error of {} realisations)\n", command.spheres,
                  fraction, line("E", youngs), line("nu", poisson), command.realisations);
   }
-  study.write(command.folder);
+  study.say_where(command.folder);
 }
 
 }  // namespace
@@ -219,8 +247,12 @@ int voxel_command(const VoxelCommand& given, MPI_Comm comm) {
   if (!command.spheres.empty()) {
     if (command.fractions.empty()) throw InputError("--spheres needs --solid-fraction, e.g. --solid-fraction 0.7");
     if (command.folder.empty()) throw InputError("--spheres needs --out, a folder for the tables");
+    if (command.asked() || command.pores || !command.overrides.empty())
+      throw InputError("--spheres takes no moments, no --pores and no --set: these go with a RESULT");
     study_spheres(command, study);
   } else {
+    if (!command.fractions.empty())
+      throw InputError("--solid-fraction goes with --spheres; a RESULT has its own density");
     study_result(command, study);
   }
   return 0;

@@ -18,7 +18,11 @@ fem::LevelSet packing_level_set(const dem::SpecimenNetwork& s, int n) {
   fem::LevelSet level(s.cell.h, voxels, farthest * mean);
   for (std::size_t p = 0; p < s.position.size(); ++p) level.add(fem::Ball{s.position[p], s.radius[p], s.material[p]});
   for (const dem::NetworkEdge& e : s.network.edges)
-    if (e.neck_radius > 0) level.add(fem::Rod{s.position[e.i], e.branch, e.neck_radius, s.material[e.i]});
+    if (e.neck_radius > 0) {
+      const Vec3 far = s.position[e.i] + e.branch, plane = s.position[e.i] + e.lever * e.normal;
+      level.add(fem::Rod{s.position[e.i], plane - s.position[e.i], e.neck_radius, s.material[e.i]});
+      level.add(fem::Rod{far, plane - far, e.neck_radius, s.far_material[std::size_t(&e - s.network.edges.data())]});
+    }
   return level;
 }
 

@@ -6,8 +6,8 @@
 
 namespace densify::coupling {
 
-/// Spheres and, where contacts have necks, rods of the necks' radii between the centres; n voxels along the cell's
-/// longest edge and as many along the others as make them nearly cubes.  Needs a periodic cell.
+/// Spheres and, where contacts have necks, rods of the necks' radii from the centres to the neck's plane; n voxels
+/// along the cell's longest edge and as many along the others as make them nearly cubes.  Needs a periodic cell.
 fem::LevelSet packing_level_set(const dem::SpecimenNetwork&, int n);
 
 /// Elasticity of every material at a temperature [K].

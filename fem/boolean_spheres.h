@@ -10,7 +10,7 @@ enum class BooleanModel { solid_spheres, spherical_pores };
 
 /// n^3 voxels of a cube with an edge of `box` radii and exactly the solid fraction asked for: as many spheres as give
 /// it on the average, -ln(void) box^3/(4 pi/3) of them, then all grown or shrunk alike.  The same seed gives the same
-/// places at every n.
+/// places at every n.  Throws InputError for fewer than ten spheres.
 VoxelImage boolean_spheres(BooleanModel, double solid_fraction, double box, int n, unsigned seed);
 
 }  // namespace densify::fem

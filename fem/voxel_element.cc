@@ -8,14 +8,18 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/tria.h>
 
+#include <Eigen/LU>
+
 namespace densify::fem {
 
 ElementMatrix element_matrix(const Mat3& edges, const ElasticSolid& solid) {
   const double e = solid.youngs_modulus, nu = solid.poissons_ratio;
   const double lambda = e * nu / ((1 + nu) * (1 - 2 * nu)), mu = e / (2 * (1 + nu));
+  // The same about the other side of the origin, so that left-handed edges make a cell that deal.II can have.
+  const double side = edges.determinant() < 0 ? -1 : 1;
   dealii::Point<3> corners[3];
   for (int k = 0; k < 3; ++k)
-    for (int c = 0; c < 3; ++c) corners[k][c] = edges(c, k);
+    for (int c = 0; c < 3; ++c) corners[k][c] = side * edges(c, k);
   dealii::Triangulation<3> one;
   dealii::GridGenerator::parallelepiped(one, corners);
   const dealii::FESystem<3> fe(dealii::FE_Q<3>(1), 3);

@@ -52,6 +52,16 @@ TEST(VoxelImage, GrowthAndMaterials) {
   EXPECT_THROW(level.shift_for(0.99), InputError);
 }
 
+// A body from too few spheres would not be random: refused, with the box that would do.
+TEST(BooleanSpheres, TooFewAreRefused) {
+  try {
+    boolean_spheres(BooleanModel::spherical_pores, 0.999, 12, 16, 1);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("take a box of 34.7 or more"), std::string::npos) << error.what();
+  }
+}
+
 // A plate spans two directions and resists nothing in the third: removed.  Three crossing bars span; a loose voxel and
 // one that only an edge joins to a bar do not belong to them.
 TEST(VoxelImage, WhatHangsTogether) {
