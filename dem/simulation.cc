@@ -57,9 +57,6 @@ Simulation::Simulation(Setup setup)
   if (setup_.integration.method == IntegrationMethod::inertia_free && setup_.contact.friction)
     throw InputError(
         "integration.method: \"inertia_free\" has no rotations, which [contact.friction] needs; remove one");
-  if (setup_.integration.method == IntegrationMethod::inertia_free && setup_.cell_path)
-    throw InputError(
-        "integration.method: \"inertia_free\" cannot move a cell that the process drives; use method = \"explicit\"");
   Particles& particles = setup_.particles;
   const auto order = spatial_order(particles);
   permute(particles.body, order);

@@ -15,10 +15,11 @@ namespace {
 using Vector = Eigen::VectorXd;
 using End = NetworkLink::End;
 
-constexpr int most_newton = 16;          // solutions of one trial
-constexpr double young_neck = 0.15;      // neck over radius below which a neck resists at least as one of this size
-constexpr double breaking_share = 0.05;  // of the first trial, from which on a force that breaks away is accepted
-constexpr double breaking_force = 0.1;   // unbalanced over contact force that may break away in one step
+constexpr int most_newton = 16;            // solutions of one trial
+constexpr double young_neck = 0.15;        // neck over radius below which a neck resists at least as one of this size
+constexpr double breaking_share = 0.05;    // of the first trial, from which on a force that breaks away is accepted
+constexpr double stress_tolerance = 1e-3;  // stress of a cell off its goal, over what the contacts carry
+constexpr double breaking_force = 0.1;     // unbalanced over contact force that may break away in one step
 constexpr double furthest_over_radius = 0.25;  // that a particle may move in one step
 constexpr double furthest_over_skin = 0.25;    // likewise, so that no contact is met that the list does not hold
 constexpr double smallest_force = 1e-300;      // [N], where nothing acts at all
@@ -105,13 +106,16 @@ InertiaFree::Trial InertiaFree::prepare(const State& s, const Setup& setup, cons
   for (std::size_t p = 0; p < s.particles.size(); ++p)
     inertia_.segment<3>(Eigen::Index(3 * p)).setConstant(scaling / (s.particles.body[p].inverse_mass * t.step));
   if (guided) inertia_[network_.rows() - 1] = kept * s.punch.mass / t.step;
+  double mass = 0;
+  for (const Body& b : s.particles.body) mass += scaling / b.inverse_mass;
+  cell_.begin(s, setup, t.step, t.end, mass);
   return t;
 }
 
 /// Particles, cell and walls as they will be at the end of the step with the present velocities.
 void InertiaFree::look_ahead(const State& s, const Trial& t) {
-  const bool deforming = s.cell.periodic && !s.cell.velocity_gradient.isZero(0);
-  const Mat3 flow = t.step * s.cell.velocity_gradient;
+  const bool deforming = s.cell.periodic && !cell_.gradient().isZero(0);
+  const Mat3 flow = t.step * cell_.gradient();
   ahead_.material = s.particles.material;
   ahead_.body = s.particles.body;
   for (std::size_t p = 0; p < ahead_.size(); ++p) {
@@ -143,8 +147,12 @@ void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t, do
   network_.resist(inertia_);
   resultant_ = external_ - inertia_.cwiseProduct(velocity_ - before_);
   double squares = external_.squaredNorm();
-  const bool deforming = s.cell.periodic && !s.cell.velocity_gradient.isZero(0);
+  const bool deforming = s.cell.periodic && !cell_.gradient().isZero(0);
+  cell_.clear(network_.rows());
   const double lateral_share = setup.integration.inertia_free.tangential_share;
+  // Pores close with the powder's density, as they will have when the next pass meets them.
+  if (pores_.density)
+    pores_.scale = powder_density(ahead_, powder_room(ahead_, cell_ahead_, walls_ahead_)) / s.local_density.powder;
   const ContactWorld world{ahead_, s.contacts, cell_ahead_, *table_, setup.contact, walls_ahead_, pores_};
   visit_contacts(world, 0, [&](const ContactView& view, const auto& law, const NeckHistory* neck) {
     NetworkLink link{view.normal, 0, 0, view.i, view.j, End::particle};
@@ -169,7 +177,7 @@ void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t, do
       const Body& b = ahead_.body[view.j];
       const double grown_j = growth_[ahead_.material[view.j]] / (1 + growth_[ahead_.material[view.j]]);
       motion = network_.relative(link, velocity_);
-      if (deforming) motion += s.cell.velocity_gradient * view.branch;
+      if (deforming) motion += cell_.gradient() * view.branch;
       c.growth_in_rate = thermal_growth(a.radius, b.radius, view.input.overlap, grown_i, grown_j,
                                         neck && neck->phase != NeckPhase::loose);
     }
@@ -177,31 +185,38 @@ void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t, do
     const NormalForce force = force_at_end(law, neck, c, rate);
     link.coefficient = coefficient(law, neck, c, rate, force.total, young);
     link.lateral = lateral_share * link.coefficient;
-    network_.add_force(link, force.total * view.normal + link.lateral * (motion - rate * view.normal), resultant_);
+    const Vec3 on_i = force.total * view.normal + link.lateral * (motion - rate * view.normal);
+    network_.add_force(link, on_i, resultant_);
     // The force turns with the branch: what pulls holds its ends across, as a string does.  What pushes lets them go,
     // which the matrix leaves out to stay definite.
     if (!view.at_wall) link.lateral += t.step * std::max(0.0, force.total) / view.branch.norm();
     network_.add(link);
+    if (cell_.balances()) cell_.add(network_, link, view.branch, on_i);
     const double passive = force.total - force.sintering;  // the two may cancel
     squares += passive * passive + force.sintering * force.sintering;
   });
   force_scale_ = std::sqrt(squares);
+  if (cell_.balances()) cell_.close(cell_ahead_.volume());
 }
 
 bool InertiaFree::balance(const State& s, const Setup& setup, const Trial& t) {
   const double goal = setup.integration.inertia_free.force_tolerance;
   double best = std::numeric_limits<double>::infinity();
   Vector best_velocity = velocity_;
+  Mat3 best_gradient = cell_.gradient();
   constexpr double falling = 0.1;
   double young = 1;
   for (int n = 0;; ++n) {
     young = std::pow(falling, n);
     respond(s, setup, t, young);
-    const double residual = resultant_.norm(), share = residual / std::max(force_scale_, smallest_force);
+    const double residual = resultant_.norm();
+    const double share =
+        std::max(residual / std::max(force_scale_, smallest_force), goal * cell_.off() / stress_tolerance);
     if (share <= goal) return true;
     if (share < best) {
       best = share;
       best_velocity = velocity_;
+      best_gradient = cell_.gradient();
     }
     if (n == most_newton || !std::isfinite(share)) break;
     constexpr double forcing = 0.1, within_goal = 0.3;
@@ -210,11 +225,15 @@ bool InertiaFree::balance(const State& s, const Setup& setup, const Trial& t) {
         network_.solve(resultant_, change_, {std::max(forcing * residual, within_goal * goal * force_scale_), 0});
     ++count_.solutions;
     count_.iterations += std::uint64_t(report.iterations);
+    if (cell_.balances()) count_.iterations += std::uint64_t(cell_.solve(network_, change_));
     // Contacts that open and close from one iterate to the next come to rest on half the way.
     constexpr int whole_steps = 10;
-    velocity_ += (n < whole_steps ? 1.0 : 0.5) * change_;
+    const double factor = n < whole_steps ? 1.0 : 0.5;
+    velocity_ += factor * change_;
+    if (cell_.balances()) cell_.advance(factor);
   }
   velocity_ = best_velocity;
+  cell_.set_gradient(best_gradient);
   respond(s, setup, t, young);
   return false;
 }
@@ -223,8 +242,12 @@ double InertiaFree::error_estimate(const State& s, const Trial& t) const {
   double radius = 0, sum = 0;
   for (const double r : s.particles.reference_radius) radius += r / double(s.particles.size());
   const Vector difference = velocity_ - before_;
-  for (const NetworkLink& link : network_.links())
-    sum += std::abs(network_.relative(link, difference).dot(link.normal));
+  for (std::size_t k = 0; k < network_.links().size(); ++k) {
+    const NetworkLink& link = network_.links()[k];
+    double along = network_.relative(link, difference).dot(link.normal);
+    if (cell_.balances()) along += cell_.change_along(k, link.normal);
+    sum += std::abs(along);
+  }
   const double count = std::max<double>(1, double(network_.links().size()));
   return 0.5 * t.step * sum / count / radius;
 }
@@ -235,6 +258,13 @@ void InertiaFree::apply(State& s, const Trial& t) const {
     s.particles.body[p].position = ahead_.body[p].position;
   }
   s.cell.h = cell_ahead_.h;
+  s.cell.velocity_gradient = cell_.gradient();
+  if (s.cell_drive.stage != CellDrive::no_stage) {
+    CellDrive& drive = s.cell_drive;
+    for (std::size_t c = 0; c < 6; ++c) drive.mean[c] = cell_.gradient()(tensor_places[c][0], tensor_places[c][1]);
+    drive.slope.fill(0);
+    drive.deformation += t.step * cell_.gradient() * drive.deformation;
+  }
   if (t.guided) {
     s.punch.velocity = s.punch.mean_velocity = velocity_[network_.rows() - 1];
     s.punch.mean_acceleration = 0;
@@ -275,11 +305,12 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, c
     velocity_ = before_;
     // A contact that breaks lets go of its force at once: no shorter step balances it, the next one does.
     const bool solved = balance(s, setup, trial);
-    const bool breaks =
-        !solved && h < breaking_share * std::min(proposed, left) && resultant_.norm() <= breaking_force * force_scale_;
+    const bool breaks = !solved && h < breaking_share * std::min(proposed, left) &&
+                        resultant_.norm() <= breaking_force * force_scale_ && cell_.off() <= breaking_force;
     // How much further than it may a particle went: a step long enough to meet what the list does not hold is tried
     // again.
-    double furthest = 0;
+    const double reach = 2 * s.contacts.largest_radius + s.contacts.skin;
+    double furthest = h * cell_.gradient().norm() * reach / (furthest_over_skin * s.contacts.skin);
     for (const Body& b : ahead_.body)
       furthest =
           std::max(furthest, h * b.velocity.norm() /

@@ -4,6 +4,7 @@
 // like a dashpot k h: backward Euler through the laws' own `update`.
 
 #include "dem/boundary/walls.h"
+#include "dem/integrate/cell_step.h"
 #include "dem/network/network_operator.h"
 
 namespace densify::dem {
@@ -41,12 +42,13 @@ class InertiaFree {
   /// next force pass.  `guided` is the load-controlled wall.  Returns h [s].
   ///
   /// Solved are sum_c (F_c n + f c_n v_t) + F_ext = M (v - v_before)/h for each particle and sum F - p A likewise for
-  /// the guided wall, all at the end of the step, with F_c(v) what the law's `update` will give; by Newton's method
-  /// with difference quotients of `update` and conjugate gradients.  M is a small share of the scaled mass: nothing in
-  /// steps of ordinary length, it keeps a particle whose necks let go from being thrown as far as one likes in a short
-  /// one.  h keeps (h/2) mean |v - v_before| of the contacts below step_tolerance x mean radius, which estimates
-  /// backward Euler's error; a mean, because a contact that snaps moves at once however short the step is. Throws
-  /// RunError when no step balances the forces.
+  /// the guided wall, and V (goal - stress) = 0 for each component of a cell that a stress drives, all at the end of
+  /// the step, with F_c(v) what the law's `update` will give; by Newton's method with difference quotients of `update`
+  /// and conjugate gradients.  M is a small share of the scaled mass: nothing in steps of ordinary length, it keeps a
+  /// particle whose necks let go from being thrown as far as one likes in a short one.  h keeps (h/2) mean |v -
+  /// v_before| of the contacts below step_tolerance x mean radius, which estimates backward Euler's error; a mean,
+  /// because a contact that snaps moves at once however short the step is. Throws RunError when no step balances the
+  /// forces.
   double move(State&, const Setup&, const PairTable&, const PoreClosure&, std::optional<std::size_t> guided,
               double longest);
 
@@ -67,9 +69,10 @@ class InertiaFree {
   NetworkOperator network_{0, std::nullopt};
   Particles ahead_;  // at the end of the step: bodies and materials
   Cell cell_ahead_;
+  CellStep cell_;
   Walls walls_ahead_;
   std::optional<PairTable> table_;  // at the end of the step
-  PoreClosure pores_;               // at its start
+  PoreClosure pores_;               // at its end
   std::vector<double> growth_;      // relative, of each material over the step
   Eigen::VectorXd external_;        // forces from outside at the end of the step [N]
   Eigen::VectorXd inertia_;         // M/h of every row [N s/m]

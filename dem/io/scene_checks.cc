@@ -169,10 +169,6 @@ void check_cell(const Scene& scene, const ScenePlaces& places) {
     places.process->fail("stage",
                          "the stages drive the cell, and no stress of a periodic cell balances the forces of "
                          "a [[load]]; remove them");
-  if (scene.integration.method == IntegrationMethod::inertia_free)
-    places.integration->fail("method",
-                             "\"inertia_free\" cannot move a cell that the stages drive; use method = "
-                             "\"explicit\", or accuracy = \"standard\"");
   if (scene.cell_path->by_stress() && scene.integration.rule == StepRule::thesis)
     places.integration->fail("rule",
                              "\"thesis\" looks at one contact at a time and leaves no room for a cell that a "

@@ -95,10 +95,12 @@ TEST(CellMistakes, LoadInADrivenCell) {
 }
 
 TEST(CellMistakes, WithoutInertia) {
+  EXPECT_EQ(message_of(periodic("pressure = \"30 MPa\"", "method = \"inertia_free\"\n")), "accepted");
   EXPECT_EQ(
-      message_of(periodic("pressure = \"30 MPa\"", "method = \"inertia_free\"\n")),
-      "scene.toml:20: integration.method: \"inertia_free\" cannot move a cell that the stages drive; use method = "
-      "\"explicit\", or accuracy = \"standard\"");
+      message_of(
+          periodic("pressure = \"30 MPa\"", "method = \"inertia_free\"\n[contact.friction]\ncoefficient = 0.2\n")),
+      "scene.toml:20: integration.method: \"inertia_free\" has no rotations, which [contact.friction] needs; remove "
+      "it, or use method = \"explicit\"");
 }
 
 TEST(CellMistakes, ThesisRuleUnderStress) {
