@@ -39,6 +39,7 @@ done
 run_code run press.toml --quiet --out whole_press
 [ "$code" -eq 0 ] || fail "the press: $(cat "$err")"
 for signal in INT TERM KILL; do
+  : >"$err" # or the word that is waited for is that of the round before
   "$densify" run press.toml --out press 2>"$err" &
   pid=$!
   wait_for grep -q packing "$err"
