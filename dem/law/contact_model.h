@@ -1,5 +1,5 @@
 #pragma once
-// The settings of the contact model as a scene states them; every choice that physics.md of the thesis leaves open.
+// The settings of the contact model as a scene states them; every choice that the thesis leaves open.
 
 #include <optional>
 

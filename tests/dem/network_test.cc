@@ -1,4 +1,4 @@
-// The contact network against closed forms of lattices (physics.md "Moduli from the contact network"), a dense solution
+// The contact network against closed forms of lattices, a dense solution
 // and the laws' own updates.
 
 #include <gtest/gtest.h>

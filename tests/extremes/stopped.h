@@ -1,6 +1,8 @@
 #pragma once
 // Runs that must end by themselves, and for the right reason.
 
+#include <gtest/gtest.h>
+
 #include "base/check.h"
 #include "tests/support/setups.h"
 
@@ -20,6 +22,25 @@ std::string cause_of_stop(Work&& work) {
     return error.what();
   }
   return "";
+}
+
+/// From a time on the punch carries the pressure in the mean to 1 %, or, beyond 100 MPa, a guard has named a particle.
+inline void expect_pressure_is_carried(Simulation& sim, double pressure, double from) {
+  double impulse = 0, time = 0;
+  const std::string cause = cause_of_stop([&] {
+    while (!sim.finished()) {
+      sim.advance();
+      if (sim.state().time < from) continue;
+      impulse += sim.state().walls.normal_force()[*sim.wall("punch")] * sim.state().last_step;
+      time += sim.state().last_step;
+    }
+  });
+  if (cause.empty()) {
+    EXPECT_NEAR(impulse / time / (pressure * sim.punch_area()), 1, 0.01) << pressure;
+  } else {
+    EXPECT_GT(pressure, 1e8) << cause;
+    EXPECT_NE(cause.find("particle"), std::string::npos) << cause;
+  }
 }
 
 }  // namespace densify::test

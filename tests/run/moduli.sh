@@ -5,39 +5,7 @@ set -eu
 densify=$1 scenes=$2 work=$3
 . "$scenes/support.sh"
 
-# 27 spheres of a simple cubic crystal in a periodic cell, some of them larger, sintering from the start.
-awk 'BEGIN { print "x,y,z,radius,material"
-  for (i = 0; i < 3; i++) for (j = 0; j < 3; j++) for (k = 0; k < 3; k++)
-    printf "%g,%g,%g,%g,NiAl\n", 4 * i + 2, 4 * j + 2, 4 * k + 2, 2.02 + 0.02 * ((i + 2 * j + k) % 3) }' >periodic.csv
-cat >periodic.toml <<'END'
-[materials.NiAl]
-library = "NiAl"
-[specimen]
-shape = "periodic"
-[specimen.import]
-file = "periodic.csv"
-length_unit = "1 um"
-[specimen.cell]
-a = ["12 um", "0 um", "0 um"]
-b = ["0 um", "12 um", "0 um"]
-c = ["0 um", "0 um", "12 um"]
-[specimen.cell.velocity_gradient]
-x = ["-1e-4 1/s", "0 1/s", "0 1/s"]
-y = ["0 1/s", "-1e-4 1/s", "0 1/s"]
-z = ["0 1/s", "0 1/s", "-1e-4 1/s"]
-[contact.sintering]
-damping_ratio = 0.3
-[process]
-start_temperature = "1300 degC"
-[[process.stage]]
-name = "hold"
-duration = "5 min"
-[integration]
-mass_scaling = 1e17
-[output]
-snapshot_interval = "100 s"
-visualisation = false
-END
+crystal_here
 
 # A scene is run first; its result then needs no run.
 run_code moduli periodic.toml --out r --quiet

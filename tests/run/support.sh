@@ -49,3 +49,11 @@ same_end() {
   cmp "$1/history.csv" "$2/history.csv" || fail "$2: another history than $1"
   cmp "$1/checkpoint.h5" "$2/checkpoint.h5" || fail "$2: another final state than $1"
 }
+
+# crystal_here: $scenes/crystal.toml as periodic.toml with its 27 spheres, some of them larger.
+crystal_here() {
+  awk 'BEGIN { print "x,y,z,radius,material"
+    for (i = 0; i < 3; i++) for (j = 0; j < 3; j++) for (k = 0; k < 3; k++)
+      printf "%g,%g,%g,%g,NiAl\n", 4 * i + 2, 4 * j + 2, 4 * k + 2, 2.02 + 0.02 * ((i + 2 * j + k) % 3) }' >periodic.csv
+  cp "$scenes/crystal.toml" periodic.toml
+}

@@ -151,9 +151,9 @@ Setup copper_pair(dem::SinteringModel model, double force, double end) {
   return s;
 }
 
-// The strains of physics.md (quadrature without inertia): free 0.0341209017 and 0.0746232217 at 1e4 and 1e5 s, under
-// 0.01 N 0.1027738489 and 0.2216315606, in a thousand steps each.  Both models: the viscous one, whose explicit limit
-// m/eta asks for 1e6 steps at mass factor 1e16, needs no more.
+// The strains of two spheres by quadrature without inertia (5.1): free 0.0341209017 and 0.0746232217 at 1e4 and 1e5 s,
+// under 0.01 N 0.1027738489 and 0.2216315606, in a thousand steps each.  Both models: the viscous one, whose explicit
+// limit m/eta asks for 1e6 steps at mass factor 1e16, needs no more.
 TEST(EqualisedInertia, CopperSpheres) {
   struct Case {
     double force, end, strain;
