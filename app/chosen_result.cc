@@ -9,15 +9,19 @@
 #include "base/check.h"
 #include "base/quantity.h"
 #include "dem/io/scene.h"
+#include "dem/network/moduli.h"
 
 namespace densify::app {
 
 namespace fs = std::filesystem;
 
+bool is_result(const std::string& source) {
+  return fs::path(source).extension() == ".h5" || fs::exists(fs::path(source) / "result.h5");
+}
+
 fs::path result_file(const ChosenResult& command) {
   const fs::path given = command.source;
-  const bool result = given.extension() == ".h5" || fs::exists(given / "result.h5");
-  if (result && !command.overrides.empty())
+  if (is_result(command.source) && !command.overrides.empty())
     throw InputError("--set " + command.overrides.front() + ": " + given.string() +
                      " is a result, which no setting can change; --set goes with a scene");
   if (given.extension() == ".h5") {
@@ -88,6 +92,16 @@ std::vector<dem::StoredMoment> chosen_moments(const std::vector<dem::StoredMomen
   std::vector<dem::StoredMoment> moments;
   for (const std::size_t k : take) moments.push_back(all[k]);
   return moments;
+}
+
+std::string why_no_porous_body(const dem::SpecimenNetwork& s) {
+  try {
+    dem::require_percolation(s, dem::structure_of(s));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  if (s.relative_density < 1) return "";
+  return fmt::format("at {:.6g} s the relative density is {:.4f}: no pores are left", s.time, s.relative_density);
 }
 
 fs::path table_folder(const ChosenResult& command, const fs::path& file) {

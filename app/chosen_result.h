@@ -22,6 +22,9 @@ struct ChosenResult {
   bool asked() const { return !times.empty() || !densities.empty(); }
 };
 
+/// Whether a source names a result, and no scene.
+bool is_result(const std::string& source);
+
 /// The result that the command names; a scene is run first.
 std::filesystem::path result_file(const ChosenResult&);
 
@@ -29,6 +32,9 @@ std::filesystem::path result_file(const ChosenResult&);
 /// reach.
 std::vector<dem::StoredMoment> chosen_moments(const std::vector<dem::StoredMoment>& all, const ChosenResult&,
                                               const std::filesystem::path& file);
+
+/// Why a moment has no porous body that carries load: no network that spans, no pores left; empty when it has.
+std::string why_no_porous_body(const dem::SpecimenNetwork&);
 
 /// The folder of the tables; who writes them makes it, once there is something to write.
 std::filesystem::path table_folder(const ChosenResult&, const std::filesystem::path& file);

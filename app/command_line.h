@@ -14,6 +14,11 @@ inline constexpr const char* exit_codes =
 
 /// Options of the commands that read a result, RESULT among them.
 void add_choice(CLI::App& command, ChosenResult&);
+/// Which moments of it.
+void add_moments(CLI::App& command, ChosenResult&);
+
+/// The value of --temperature [K], above 0.  Throws InputError.
+double parsed_temperature(const std::string& text);
 
 /// What `program` returns, or the exit code of what it throws, whose text goes to the error stream.
 int guarded(const std::function<int()>& program);

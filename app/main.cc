@@ -7,6 +7,7 @@
 #include "app/bench.h"
 #include "app/check.h"
 #include "app/command_line.h"
+#include "app/compare_moduli.h"
 #include "app/moduli.h"
 #include "app/run.h"
 #include "app/stresses.h"
@@ -107,6 +108,12 @@ int run_main(int argc, char** argv) {
 
   app.add_subcommand("voxel-moduli", "Elastic moduli by finite elements on voxels (deal.II, PETSc); its own --help");
 
+  densify::app::CompareCommand compare;
+  CLI::App* compare_command = app.add_subcommand(
+      "compare-moduli",
+      "Moduli along the densification by contact networks and voxel elements, beside curves, bounds and measurements");
+  densify::app::add_comparison_options(*compare_command, compare);
+
   CLI::App* ladder_command =
       app.add_subcommand("help-ladder", "Every key of a ladder with unit, range, default and meaning");
   CLI::App* scene_command =
@@ -129,6 +136,7 @@ int run_main(int argc, char** argv) {
   if (check_command->parsed()) return densify::app::check_command(check);
   if (bench_command->parsed()) return densify::app::bench_command(bench);
   if (moduli_command->parsed()) return densify::app::moduli_command(moduli);
+  if (compare_command->parsed()) return densify::app::compare_command(compare);
   if (stresses_command->parsed()) return densify::app::stresses_command(stresses);
   if (trade_command->parsed()) return densify::app::trade_command(trade);
   if (ladder_command->parsed()) std::fputs(densify::app::ladder_help().c_str(), stdout);

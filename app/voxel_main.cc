@@ -23,6 +23,9 @@ int run_main(int argc, char** argv) {
       ->take_all();
   app.add_flag("--pores", command.pores,
                "The body is what the packing leaves free: its solid fraction is 1 less the relative density");
+  std::string temperature;
+  app.add_option("--temperature", temperature,
+                 "At which a packing's materials have their moduli, e.g. \"20 degC\"; without it that of the snapshot");
   app.add_option("--tolerance", command.tolerance, "Of the balance of forces; without it 1e-6")
       ->check(CLI::Range(1e-12, 1e-2));
   app.add_option("--spheres", command.spheres,
@@ -45,6 +48,7 @@ int run_main(int argc, char** argv) {
     if (rank > 0) return error.get_exit_code() == 0 ? 0 : 2;
     return app.exit(error) == 0 ? 0 : 2;
   }
+  if (!temperature.empty()) command.temperature = densify::app::parsed_temperature(temperature);
   return densify::app::voxel_command(command, MPI_COMM_WORLD);
 }
 

@@ -143,20 +143,8 @@ Body grown(const fem::LevelSet& level, const dem::SpecimenNetwork& s, int n, boo
           shift / width};
 }
 
-/// Why a moment has no body to show; empty when it has.
-std::string obstacle(const dem::SpecimenNetwork& s) {
-  try {
-    dem::require_percolation(s, dem::structure_of(s));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  if (s.relative_density < 1) return "";
-  return fmt::format("at {:.6g} s the relative density is {:.4f}: no pores are left that voxels could show", s.time,
-                     s.relative_density);
-}
-
 void study_result(const VoxelCommand& command, Study& study) {
-  if (study.ranks() > 1 && !std::filesystem::exists(command.source + "/result.h5") && !command.source.ends_with(".h5"))
+  if (study.ranks() > 1 && !is_result(command.source))
     throw InputError(command.source + ": several ranks take a result that is there; run the scene first");
   const std::filesystem::path path = result_file(command);
   const dem::Hdf5Reader file(path);
@@ -170,7 +158,8 @@ void study_result(const VoxelCommand& command, Study& study) {
   std::string why;
   for (const dem::StoredMoment& moment : chosen_moments(dem::stored_moments(file), command, path)) {
     bodies.push_back(dem::read_network(file, scene, moment));
-    const std::string left_out = obstacle(bodies.back());
+    if (std::isfinite(command.temperature)) bodies.back().temperature = command.temperature;
+    const std::string left_out = why_no_porous_body(bodies.back());
     if (left_out.empty()) continue;
     if (command.asked()) throw InputError(left_out);
     why = left_out;
@@ -247,8 +236,8 @@ int voxel_command(const VoxelCommand& given, MPI_Comm comm) {
   if (!command.spheres.empty()) {
     if (command.fractions.empty()) throw InputError("--spheres needs --solid-fraction, e.g. --solid-fraction 0.7");
     if (command.folder.empty()) throw InputError("--spheres needs --out, a folder for the tables");
-    if (command.asked() || command.pores || !command.overrides.empty())
-      throw InputError("--spheres takes no moments, no --pores and no --set: these go with a RESULT");
+    if (command.asked() || command.pores || !command.overrides.empty() || std::isfinite(command.temperature))
+      throw InputError("--spheres takes no moments, no --pores, no --temperature and no --set: these go with a RESULT");
     study_spheres(command, study);
   } else {
     if (!command.fractions.empty())

@@ -3,6 +3,8 @@
 
 #include <mpi.h>
 
+#include <limits>
+
 #include "app/chosen_result.h"
 
 namespace densify::app {
@@ -10,7 +12,8 @@ namespace densify::app {
 struct VoxelCommand : ChosenResult {
   std::vector<int> voxels{32, 48, 64};  ///< along the longest edge
   double tolerance = 1e-6;
-  bool pores = false;  ///< the spheres are the pores
+  bool pores = false;                                             ///< the spheres are the pores
+  double temperature = std::numeric_limits<double>::quiet_NaN();  ///< of the solids [K]; NaN: the snapshot's
   // Instead of a result:
   std::string spheres;            ///< "solid" or "pores": the models of Roberts and Garboczi
   std::vector<double> fractions;  ///< solid

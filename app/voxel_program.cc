@@ -1,8 +1,12 @@
 #include "app/voxel_program.h"
 
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -30,19 +34,15 @@ int take_ranks(std::vector<std::string>& arguments) {
   return 1;
 }
 
-}  // namespace
-
-void become_voxel_program(int argc, char** argv) {
+std::filesystem::path voxel_program() {
   std::error_code failure;
-  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", failure).parent_path();
-  const std::filesystem::path program = here / "densify-voxel-moduli";
-  if (!std::filesystem::exists(program))
-    throw InputError(
-        "voxel-moduli needs deal.II and PETSc, which this build was made without: take one that is not of "
-        "preset dem-only, with libdeal.ii-dev installed");
-  std::vector<std::string> words(argv + 2, argv + argc);
+  return std::filesystem::read_symlink("/proc/self/exe", failure).parent_path() / "densify-voxel-moduli";
+}
+
+/// The whole call, with mpirun before it when there are several ranks, and what the ranks need in the environment.
+std::vector<std::string> call_of(std::vector<std::string> words) {
   const int ranks = take_ranks(words);
-  words.insert(words.begin(), program.string());
+  words.insert(words.begin(), voxel_program().string());
   if (ranks > 1) {
     setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);  // mpirun refuses root otherwise; containers have no other user
     setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
@@ -50,11 +50,49 @@ void become_voxel_program(int argc, char** argv) {
   }
   setenv("OPENBLAS_NUM_THREADS", "1", 0);          // a rank is one thread
   setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);  // ranks that wait leave a busy core to others
+  return words;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
   std::vector<char*> pointers;
   for (std::string& w : words) pointers.push_back(w.data());
   pointers.push_back(nullptr);
-  execvp(pointers[0], pointers.data());
-  throw InputError("cannot start " + words[0] + (ranks > 1 ? "; install openmpi-bin or leave --ranks out" : ""));
+  return pointers;
+}
+
+[[noreturn]] void cannot_start(const std::string& program) {
+  throw InputError("cannot start " + program +
+                   (program == "mpirun" ? "; install openmpi-bin or leave --ranks out" : ""));
+}
+
+}  // namespace
+
+void require_voxel_program(const std::string& who, const std::string& otherwise) {
+  if (!std::filesystem::exists(voxel_program()))
+    throw InputError(who +
+                     " needs deal.II and PETSc, which this build was made without: take one that is not of preset "
+                     "dem-only, with libdeal.ii-dev installed" +
+                     otherwise);
+}
+
+void become_voxel_program(int argc, char** argv) {
+  require_voxel_program("voxel-moduli", "");
+  std::vector<std::string> words = call_of({argv + 2, argv + argc});
+  execvp(words[0].c_str(), pointers_to(words).data());
+  cannot_start(words[0]);
+}
+
+int run_voxel_program(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = call_of(arguments);
+  std::fflush(stdout);
+  pid_t child;
+  if (posix_spawnp(&child, words[0].c_str(), nullptr, nullptr, pointers_to(words).data(), environ) != 0)
+    cannot_start(words[0]);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  constexpr int killed = 128;  // as a shell has it
+  return WIFEXITED(status) ? WEXITSTATUS(status) : killed + WTERMSIG(status);
 }
 
 }  // namespace densify::app

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/isotropic.h"
+
 namespace densify {
 
 namespace {
@@ -28,8 +30,8 @@ IsotropicPart isotropic_part(const Mat6& given) {
   IsotropicPart p;
   p.bulk = trace / 9;
   p.shear = (3 * full - trace) / 30;
-  p.youngs = 9 * p.bulk * p.shear / (3 * p.bulk + p.shear);
-  p.poisson = (3 * p.bulk - 2 * p.shear) / (2 * (3 * p.bulk + p.shear));
+  p.youngs = IsotropicModuli{p.bulk, p.shear}.youngs();
+  p.poisson = IsotropicModuli{p.bulk, p.shear}.poisson();
   const Mat6 m = mandel(c);
   Mat6 iso = 2 * p.shear * Mat6::Identity();
   iso.topLeftCorner<3, 3>().array() += p.bulk - 2 * p.shear / 3;

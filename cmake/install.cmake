@@ -18,7 +18,7 @@ install(DIRECTORY dem/material/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/den
         FILES_MATCHING PATTERN *.toml)  # OPTIONAL: tests/install counts what arrives
 install(DIRECTORY examples/benchmark/packings DESTINATION ${CMAKE_INSTALL_DATADIR}/densify/benchmark
         FILES_MATCHING PATTERN *.data)
-install(FILES examples/tools/plot_stresses.py examples/tools/plot_trade.py DESTINATION ${CMAKE_INSTALL_DATADIR}/densify/tools)
+install(FILES examples/tools/plot_moduli.py examples/tools/plot_stresses.py examples/tools/plot_trade.py DESTINATION ${CMAKE_INSTALL_DATADIR}/densify/tools)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(cmake/DensifyConfig.cmake.in ${PROJECT_BINARY_DIR}/DensifyConfig.cmake

@@ -68,6 +68,27 @@ ViscousAnswer viscous_answer(const SpecimenNetwork& s, const ModuliSettings& set
   return v;
 }
 
+std::vector<Phase> solid_phases(const SpecimenNetwork& s, const std::vector<Material>& materials) {
+  std::vector<double> volume(materials.size(), 0.0);
+  double all = 0;
+  for (std::size_t p = 0; p < s.radius.size(); ++p) {
+    const double cube = s.radius[p] * s.radius[p] * s.radius[p];
+    volume[s.material[p]] += cube;
+    all += cube;
+  }
+  std::vector<Phase> phases;
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    if (volume[m] == 0) continue;
+    const double youngs = materials[m].youngs_modulus(s.temperature),
+                 poisson = materials[m].poissons_ratio(s.temperature);
+    if (!(youngs > 0 && std::isfinite(poisson)))
+      throw InputError("the dense body needs Young's modulus and Poisson's ratio of \"" + materials[m].name +
+                       "\"; set youngs_modulus and poissons_ratio in [materials." + materials[m].name + "]");
+    phases.push_back({volume[m] / all, isotropic_moduli(youngs, poisson)});
+  }
+  return phases;
+}
+
 void require_percolation(const SpecimenNetwork& s, const NetworkStructure& n) {
   if (n.directions == 3) return;
   throw InputError("no network spans the " + std::string(s.cell.periodic ? "cell" : "region") + " at " +

@@ -2,6 +2,7 @@
 // The material that a packing is at one moment: elastic moduli by several contact models, viscosities, sintering
 // stress and free densification rate.
 
+#include "base/bounds.h"
 #include "base/elastic_tensor.h"
 #include "dem/network/neck_models.h"
 #include "dem/network/structure.h"
@@ -45,6 +46,10 @@ std::size_t count_flowing(const SpecimenNetwork&);
 
 /// Dashpots for springs, the necks as they are.  Needs contacts that flow.
 ViscousAnswer viscous_answer(const SpecimenNetwork&, const ModuliSettings&);
+
+/// The particles' materials by volume with their moduli at the network's temperature: the dense body that the packing
+/// would become.  Throws InputError when a material that is there has no moduli.
+std::vector<Phase> solid_phases(const SpecimenNetwork&, const std::vector<Material>&);
 
 /// Throws InputError when no island of contacts spans the cell or the region.
 void require_percolation(const SpecimenNetwork&, const NetworkStructure&);
