@@ -78,15 +78,22 @@ Body read_body(const CompareCommand& command, const std::string& source, const s
   return body;
 }
 
-Route by_network(const Body& body, dem::NeckModel model) {
+/// A solution that fails its checks, as of a nearly floppy network, leaves a point without moduli.
+Route by_network(const Body& body, dem::NeckModel model, bool quiet) {
   Route route{body.name, dem::name_of(model), {}};
   dem::ModuliSettings settings;
   for (const dem::SpecimenNetwork& s : body.moments) {
-    const dem::TensorAnswer a = dem::elastic_answer(s, body.materials, model, settings);
     ModuliPoint p;
     p.relative_density = s.relative_density, p.time = s.time;
-    p.youngs = a.relaxed.youngs;
-    if (!a.response.floppy) p.poisson = a.relaxed.poisson;
+    try {
+      const dem::TensorAnswer a = dem::elastic_answer(s, body.materials, model, settings);
+      p.youngs = a.relaxed.youngs;
+      if (!a.response.floppy) p.poisson = a.relaxed.poisson;
+    } catch (const RunError& error) {
+      if (!quiet)
+        fmt::print("warning: {}, {} at relative density {:.4f}, is left out: {}\n", route.result, route.name,
+                   s.relative_density, error.what());
+    }
     route.points.push_back(p);
   }
   return route;
@@ -225,7 +232,7 @@ int compare_command(const CompareCommand& command) {
     for (const dem::NeckModel model : dem::all_neck_models) {
       const bool named = std::find(models.begin(), models.end(), model) != models.end();
       if (models.empty() ? springless(model) : !named) continue;
-      routes.push_back(by_network(body, model));
+      routes.push_back(by_network(body, model, command.quiet));
     }
     if (!command.no_voxels) {
       int code = 0;

@@ -112,7 +112,7 @@ void add_comparison(ResultTable& table, const Route& route, const DenseBody& bod
                 {"poissons_ratio", "", p.poisson},
                 {"poissons_ratio_error", "", p.poisson_error},
                 {"strength", "Pa", p.strength},
-                {"voxels_across_neck", "", p.voxels_across_neck},
+                {"coarsest_voxels_across_neck", "", p.voxels_across_neck},
                 {"solid_youngs_modulus", "Pa", solid.youngs()},
                 {"solid_poissons_ratio", "", solid.poisson()}};
     const Cells curves = curve_cells(c, body.strength);
