@@ -2,9 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "app/moduli_table.h"
+#include "app/progress_line.h"
 #include "base/check.h"
 #include "base/version.h"
 
@@ -68,6 +71,16 @@ int moduli_command(const ModuliCommand& command) {
           scene.contact.sintering->model != dem::SinteringModel::viscous)
         settings.models.push_back(m);
 
+  ProgressLine progress(command.quiet);
+  std::string solving;
+  // Only what takes long is shown; the error falls by powers of ten.
+  auto start = std::chrono::steady_clock::now();
+  auto begin = [&](const std::string& what) { solving = what, start = std::chrono::steady_clock::now(); };
+  settings.watch = [&](double error) {
+    constexpr double long_time = 2;  // [s]
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < long_time) return;
+    progress.show_solution(solving, std::clamp(std::log(error) / std::log(settings.balance), 0.0, 1.0));
+  };
   ResultTable elastic({"model"}), viscous({"stage"});
   const auto moments = chosen_moments(dem::stored_moments(file), command, path);
   for (const dem::StoredMoment& moment : moments) {
@@ -87,12 +100,16 @@ int moduli_command(const ModuliCommand& command) {
       return more;
     };
     for (const dem::NeckModel model : settings.models) {
+      begin(dem::name_of(model));
       const auto a = dem::elastic_answer(s, scene.materials, model, settings);
+      progress.end();
       elastic.add_row({dem::name_of(model)}, row(stiffness_cells(a)));
       if (!command.quiet) print_elastic(dem::name_of(model), a);
     }
     if (dem::count_flowing(s) == 0) continue;
+    begin("viscosity");
     const auto v = dem::viscous_answer(s, settings);
+    progress.end();
     viscous.add_row({s.stage}, row(viscosity_cells(v)));
     if (!command.quiet) print_viscous(v);
   }

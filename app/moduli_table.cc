@@ -23,6 +23,7 @@ void add_checks(std::vector<Cell>& cells, const dem::TensorAnswer& a) {
   cells.push_back({"asymmetry", "", a.response.asymmetry});
   cells.push_back({"power_mismatch", "", a.response.power_mismatch});
   cells.push_back({"smallest_eigenvalue", "", a.response.smallest_eigenvalue});
+  cells.push_back({"imbalance", "", a.response.imbalance});
   cells.push_back({"floppy", "", double(a.response.floppy)});
   cells.push_back({"soft_modes", "", a.soft_modes});
   cells.push_back({"iterations", "", double(a.response.iterations)});

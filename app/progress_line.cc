@@ -64,6 +64,10 @@ void ProgressLine::show_count(const char* what, std::size_t done, std::size_t al
       int(10 * share));
 }
 
+void ProgressLine::show_solution(const std::string& what, double share) {
+  put(fmt::format("{:3.0f} %  balancing forces: {}", 100 * share, what), int(10 * share));
+}
+
 void ProgressLine::say(const std::string& line) {
   if (quiet_) return;
   end();

@@ -19,6 +19,8 @@ class ProgressLine {
   void show(const dem::Progress&);
   /// "3 of 8 runs", with the share of all work and the wall time that is left [s].
   void show_count(const char* what, std::size_t done, std::size_t all, double share, double seconds_left);
+  /// What is being solved and how far it is, 0 to 1.
+  void show_solution(const std::string& what, double share);
   /// A line of its own.
   void say(const std::string& line);
   /// To be called before anything else is printed.

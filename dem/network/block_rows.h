@@ -2,6 +2,7 @@
 // Symmetric sparse matrices of small blocks, one row of blocks a node, times several vectors at once: a block that has
 // come from memory serves all of them.
 
+#include <Eigen/SparseCore>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +28,6 @@ struct BlockRows {
   std::vector<Tile<B, B>> block;
   std::vector<Vec3> branch;          ///< from the row's node to the column's
   std::vector<Tile<B, B>> diagonal;  ///< of each node
-  std::vector<Tile<B, B>> inverse;   ///< of the diagonal, on its range
   std::vector<double> scale;         ///< of what was summed up in the diagonal: its rounding is this times 1e-16
 
   std::size_t nodes() const { return diagonal.size(); }
@@ -57,5 +57,18 @@ void multiply(const BlockRows<B>& a, const Stack<B, C>& x, Stack<B, C>& y) {
     y[n] = sum;
   }
 }
+
+/// R with R^T R the inverse of a symmetric positive semidefinite block on its range: eigenvalues up to 1e-12 of
+/// `scale`, that of what was summed up in it, count as none.
+template <int B>
+Tile<B, B> root_of_inverse(const Tile<B, B>&, double scale);
+
+/// A as a sparse matrix.
+template <int B>
+Eigen::SparseMatrix<double> assemble(const BlockRows<B>&);
+
+/// Number of eigenvalues below `share` of the largest diagonal entry, by the inertia of A - shift (Sylvester).
+template <int B>
+std::size_t count_soft_modes(const BlockRows<B>&, double share);
 
 }  // namespace densify::dem

@@ -16,7 +16,7 @@ TensorAnswer answer(const SpecimenNetwork& s, const std::vector<EdgeLaw>& laws, 
   TensorAnswer a;
   const NetworkEdge* const first = s.network.edges.data();
   const auto law = [&](const NetworkEdge& e) { return laws[std::size_t(&e - first)]; };
-  a.response = probe_cell(s.network, law, {s.volume, settings.balance, rotation, usual_direct_nodes(rotation)});
+  a.response = probe_cell(s.network, law, {s.volume, settings.balance, rotation, 250, settings.watch});
   require_sound(a.response, settings.tolerance);
   a.relaxed = isotropic_part(a.response.relaxed);
   a.affine = isotropic_part(a.response.affine);

@@ -14,9 +14,10 @@ struct ModuliSettings {
   double tangential = unset;        ///< lateral over normal stiffness of contacts; unset: the model's own
   double tangential_viscosity = 0;  ///< lateral over normal viscosity: a regularisation, the law has none
   double rigid = 1e4;               ///< contacts that do not flow, over the median viscosity of those that do
-  double balance = 1e-8;            ///< of the balance of forces, see ProbeSettings
+  double balance = 1e-6;            ///< of the balance of forces, see ProbeSettings
   double soft_share = unset;        ///< count motions that resist less than this share of the stiffest; unset: do not
   double tolerance = 1e-6;          ///< of symmetry, definiteness and Hill-Mandel
+  std::function<void(double)> watch = {};  ///< see ProbeSettings
 };
 
 /// A tensor with its isotropic part, relaxed and affine.

@@ -1,6 +1,5 @@
 #include "dem/network/multigrid.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -43,63 +42,29 @@ double norm(const Tile<B, B>& t) {
   return std::sqrt(sum);
 }
 
+/// Inverse of P^T A P on the directions that are not those of others to rounding.
+template <int C>
+Eigen::Matrix<double, C, C> inverse_of_directions(const Eigen::Matrix<double, C, C>& a) {
+  using Small = Eigen::Matrix<double, C, C>;
+  Eigen::Matrix<double, C, 1> scale;
+  for (int c = 0; c < C; ++c) scale[c] = a(c, c) > 0 ? 1 / std::sqrt(a(c, c)) : 0.0;
+  const Small unit = scale.asDiagonal() * (0.5 * (a + a.transpose())) * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Small> eigen(unit);
+  constexpr double rounding = 1e-8;  // below it they are those of others
+  Eigen::Matrix<double, C, 1> values;
+  for (int c = 0; c < C; ++c) values[c] = eigen.eigenvalues()[c] > rounding ? 1 / eigen.eigenvalues()[c] : 0.0;
+  const Small vectors = scale.asDiagonal() * eigen.eigenvectors();
+  return vectors * values.asDiagonal() * vectors.transpose();
+}
+
 }  // namespace
 
 template <int B>
-void invert_diagonal(BlockRows<B>& a) {
-  a.inverse.resize(a.nodes());
-  for (std::size_t n = 0; n < a.nodes(); ++n) {
-    const Block<B> d = as_matrix<B>(a.diagonal[n]);
-    Eigen::Map<Block<B>> inverse(a.inverse[n].data());
-    // A body that nothing holds is a difference of large numbers: what is left must not be taken for a resistance.
-    constexpr double well_conditioned = 1e-8, rounding = 1e-12;
-    const Eigen::LLT<Block<B>> factors(d);
-    if (factors.info() == Eigen::Success && factors.matrixLLT().diagonal().array().square().minCoeff() >
-                                                well_conditioned * std::max(d.diagonal().maxCoeff(), a.scale[n])) {
-      inverse = factors.solve(Block<B>::Identity());
-      continue;
-    }
-    const Eigen::SelfAdjointEigenSolver<Block<B>> eigen(d);
-    Eigen::Matrix<double, B, 1> values = Eigen::Matrix<double, B, 1>::Zero();
-    for (int k = 0; k < B; ++k)
-      if (eigen.eigenvalues()[k] > rounding * a.scale[n]) values[k] = 1 / eigen.eigenvalues()[k];
-    inverse = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
-  }
-}
-
-template <int B>
-Eigen::SparseMatrix<double> assemble(const BlockRows<B>& a) {
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve((a.block.size() + a.nodes()) * B * B);
-  auto add = [&](std::size_t row, std::size_t column, const Tile<B, B>& tile) {
-    for (int r = 0; r < B; ++r)
-      for (int c = 0; c < B; ++c)
-        entries.emplace_back(int(row) * B + r, int(column) * B + c, tile[std::size_t(r * B + c)]);
-  };
-  for (std::size_t n = 0; n < a.nodes(); ++n) {
-    add(n, n, a.diagonal[n]);
-    for (std::size_t e = a.begin[n]; e < a.begin[n + 1]; ++e) add(n, a.column[e], a.block[e]);
-  }
-  Eigen::SparseMatrix<double> matrix(Eigen::Index(a.nodes()) * B, Eigen::Index(a.nodes()) * B);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
-
-template <int B>
-std::size_t count_soft_modes(const BlockRows<B>& a, double share) {
-  Eigen::SparseMatrix<double> shifted = assemble(a);
-  const double largest = a.nodes() > 0 ? Eigen::VectorXd(shifted.diagonal()).maxCoeff() : 0.0;
-  if (largest == 0) return std::size_t(shifted.rows());
-  Eigen::SparseMatrix<double> identity(shifted.rows(), shifted.rows());
-  identity.setIdentity();
-  shifted -= share * largest * identity;
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(shifted);
-  return std::size_t((factors.vectorD().array() < 0).count());
-}
-
-template <int B>
 Multigrid<B>::Multigrid(BlockRows<B> matrix, std::size_t direct_nodes) : matrix_(std::move(matrix)) {
-  invert_diagonal(matrix_);
+  for (std::size_t n = 0; n < matrix_.nodes(); ++n) {
+    const Block<B> root = as_matrix<B>(root_of_inverse<B>(matrix_.diagonal[n], matrix_.scale[n]));
+    Eigen::Map<Block<B>>(inverse_.emplace_back().data()) = root.transpose() * root;
+  }
   if (matrix_.nodes() <= direct_nodes)
     factorise();
   else
@@ -111,7 +76,7 @@ Multigrid<B>::Multigrid(BlockRows<B> matrix, std::size_t direct_nodes) : matrix_
 template <int B>
 void Multigrid<B>::factorise() {
   Eigen::SparseMatrix<double> a = assemble(matrix_);
-  constexpr double share = 1e-6, of_scale = 1e-10;
+  constexpr double share = 1e-10, of_scale = 1e-12;
   Eigen::SparseMatrix<double> held(a.rows(), a.rows());
   held.setIdentity();
   for (Eigen::Index k = 0; k < a.rows(); ++k) {
@@ -246,7 +211,7 @@ void Multigrid<B>::precondition(const Stack<B, C>& r, Stack<B, C>& z) const {
     Tile<B, C> sum = r[p];
     for (std::size_t e = a.begin[p]; e < a.middle[p]; ++e) add_product<B, C>(-1, a.block[e], z[a.column[e]], sum);
     z[p] = {};
-    add_product<B, C>(1, a.inverse[p], sum, z[p]);
+    add_product<B, C>(1, inverse_[p], sum, z[p]);
   }
   Stack<6, C> gathered(coarse_->matrix_.nodes(), Tile<6, C>{}), motion(gathered.size());
   for (std::size_t p = 0; p < n; ++p) {
@@ -293,7 +258,7 @@ void Multigrid<B>::precondition(const Stack<B, C>& r, Stack<B, C>& z) const {
     // On the range of D alone: elsewhere z keeps what the coarse motion gave it.
     Tile<B, C> through{}, now = z[p];
     add_product<B, C>(-1, a.diagonal[p], now, sum);
-    add_product<B, C>(1, a.inverse[p], sum, through);
+    add_product<B, C>(1, inverse_[p], sum, through);
     for (std::size_t k = 0; k < now.size(); ++k) z[p][k] = now[k] + through[k];
   }
 }
@@ -301,65 +266,49 @@ void Multigrid<B>::precondition(const Stack<B, C>& r, Stack<B, C>& z) const {
 template <int B>
 template <int C>
 typename Multigrid<B>::Report Multigrid<B>::solve(const Stack<B, C>& b, Stack<B, C>& x, const Goal<C>& goal) const {
-  using Sums = std::array<double, std::size_t(C)>;
+  using Small = Eigen::Matrix<double, C, C>;
+  using Node = Eigen::Matrix<double, B, C, Eigen::RowMajor>;
   const std::size_t n = matrix_.nodes();
-  auto dot = [n](const Stack<B, C>& u, const Stack<B, C>& v) {
-    Sums sum{};
-    for (std::size_t p = 0; p < n; ++p)
-      for (int k = 0; k < B; ++k)
-        for (int c = 0; c < C; ++c) sum[std::size_t(c)] += u[p][std::size_t(k * C + c)] * v[p][std::size_t(k * C + c)];
+  auto inner = [n](const Stack<B, C>& u, const Stack<B, C>& v) {
+    Small sum = Small::Zero();
+    for (std::size_t k = 0; k < n; ++k)
+      sum += Eigen::Map<const Node>(u[k].data()).transpose() * Eigen::Map<const Node>(v[k].data());
     return sum;
   };
-  auto add = [n](Stack<B, C>& y, const Sums& factor, const Stack<B, C>& v) {
-    for (std::size_t p = 0; p < n; ++p)
-      for (int k = 0; k < B; ++k)
-        for (int c = 0; c < C; ++c)
-          y[p][std::size_t(k * C + c)] += factor[std::size_t(c)] * v[p][std::size_t(k * C + c)];
+  auto add = [n](Stack<B, C>& y, const Stack<B, C>& v, const Small& m) {
+    for (std::size_t k = 0; k < n; ++k) Eigen::Map<Node>(y[k].data()) += Eigen::Map<const Node>(v[k].data()) * m;
   };
   Report report;
   x.assign(n, {});
-  Stack<B, C> r = b, z(n), q(n);
-  precondition<C>(r, z);
-  Stack<B, C> p = z;
-  Sums rz = dot(r, z);
-  const Sums first = rz;
-  std::array<bool, std::size_t(C)> done{};
-  auto finished = [&] {
-    const Sums squares = dot(r, r);
-    report.converged = true;
-    report.error = 0;
-    for (std::size_t c = 0; c < std::size_t(C); ++c) {
-      const bool small = squares[c] <= goal.floor[c] * goal.floor[c];
-      const double fall = first[c] > 0 ? std::sqrt(std::abs(rz[c] / first[c])) : 0.0;
-      done[c] = done[c] || small || fall <= goal.tolerance;
-      if (done[c]) continue;
-      report.converged = false;
-      report.error = std::max(report.error, fall);
-    }
-    return report.converged;
-  };
-  while (!finished() && report.iterations < goal.most_iterations) {
-    multiply<B, C>(matrix_, p, q);
-    const Sums curvature = dot(p, q), before = rz;
-    Sums step{}, back{};
-    for (std::size_t c = 0; c < std::size_t(C); ++c) {
-      if (!(curvature[c] > 0)) done[c] = true;  // nothing is left but what the matrix does not see
-      if (!done[c]) step[c] = rz[c] / curvature[c], back[c] = -step[c];
-    }
-    add(x, step, p);
-    add(r, back, q);
-    ++report.iterations;
+  Stack<B, C> r = b, z(n), p(n, Tile<B, C>{}), q(n, Tile<B, C>{});
+  Small inverse = Small::Zero();
+  std::array<double, std::size_t(C)> first{};
+  for (;; ++report.iterations) {
     precondition<C>(r, z);
-    rz = dot(r, z);
-    for (std::size_t m = 0; m < n; ++m)
-      for (int k = 0; k < B; ++k)
-        for (int c = 0; c < C; ++c) {
-          const auto at = std::size_t(k * C + c);
-          const double turn = done[std::size_t(c)] ? 0.0 : rz[std::size_t(c)] / before[std::size_t(c)];
-          p[m][at] = z[m][at] + turn * p[m][at];
-        }
+    const Small squares = inner(r, r), rz = inner(r, z);
+    Small open = Small::Zero();  // a column that is down to rounding has no direction to offer
+    report.error = 0;
+    for (int c = 0; c < C; ++c) {
+      const auto column = std::size_t(c);
+      if (report.iterations == 0) first[column] = std::abs(rz(c, c));
+      if (squares(c, c) <= goal.floor[column] * goal.floor[column]) continue;
+      open(c, c) = 1;
+      if (first[column] > 0) report.error = std::max(report.error, std::sqrt(std::abs(rz(c, c)) / first[column]));
+    }
+    report.converged = report.error <= goal.tolerance;
+    if (goal.watch) goal.watch(report.error);
+    if (report.converged || report.iterations == goal.most_iterations) return report;
+    const Small turn = -inverse * inner(q, z) * open;
+    for (std::size_t k = 0; k < n; ++k) {
+      Eigen::Map<Node> direction(p[k].data());
+      direction = (Eigen::Map<const Node>(z[k].data()) * open + direction * turn).eval();
+    }
+    multiply<B, C>(matrix_, p, q);
+    inverse = inverse_of_directions<C>(inner(p, q));
+    const Small step = inverse * inner(p, r);
+    add(x, p, step);
+    add(r, q, -step);
   }
-  return report;
 }
 
 template <int B>
@@ -372,10 +321,8 @@ std::size_t Multigrid<B>::bytes() const {
 template class Multigrid<3>;
 template class Multigrid<6>;
 template Multigrid<3>::Report Multigrid<3>::solve<6>(const Stack<3, 6>&, Stack<3, 6>&, const Goal<6>&) const;
-template Multigrid<3>::Report Multigrid<3>::solve<1>(const Stack<3, 1>&, Stack<3, 1>&, const Goal<1>&) const;
+template Multigrid<3>::Report Multigrid<3>::solve<7>(const Stack<3, 7>&, Stack<3, 7>&, const Goal<7>&) const;
 template Multigrid<6>::Report Multigrid<6>::solve<6>(const Stack<6, 6>&, Stack<6, 6>&, const Goal<6>&) const;
-template Multigrid<6>::Report Multigrid<6>::solve<1>(const Stack<6, 1>&, Stack<6, 1>&, const Goal<1>&) const;
-template std::size_t count_soft_modes(const BlockRows<3>&, double);
-template std::size_t count_soft_modes(const BlockRows<6>&, double);
+template Multigrid<6>::Report Multigrid<6>::solve<7>(const Stack<6, 7>&, Stack<6, 7>&, const Goal<7>&) const;
 
 }  // namespace densify::dem

@@ -1,9 +1,11 @@
 #pragma once
-// Conjugate gradients for contact networks with several right-hand sides, preconditioned by multigrid: neighbouring
+// Conjugate gradients for contact networks with several right-hand sides, which share their directions of search
+// (O'Leary, 1980), so that stiffnesses from them are symmetric, preconditioned by multigrid: neighbouring
 // particles are gathered to bodies that move rigidly (plain aggregation; the six motions of each are what a network
 // resists least), a sweep of block Gauss-Seidel goes before and after, and the smallest network is factorised.
 
 #include <Eigen/SparseCholesky>
+#include <functional>
 #include <memory>
 
 #include "dem/network/block_rows.h"
@@ -16,7 +18,7 @@ class Multigrid {
   /// A matrix of at most `direct_nodes` nodes is factorised; a larger one gets coarser ones, which are factorised when
   /// they have at most `largest_coarse` of them, too.
   Multigrid(BlockRows<B> matrix, std::size_t direct_nodes);
-  static constexpr std::size_t largest_coarse = 600;
+  static constexpr std::size_t largest_coarse = 250;
 
   /// When a column is solved: the norm of its residual r is at most `floor`, or sqrt(r M r) with the preconditioner M,
   /// about the energy norm of the error, has fallen by `tolerance`.
@@ -25,11 +27,12 @@ class Multigrid {
     double tolerance;
     std::array<double, std::size_t(C)> floor;
     int most_iterations;
+    std::function<void(double)> watch = {};  ///< called before every iteration with Report::error
   };
   /// How a solution went.
   struct Report {
     int iterations = 0;
-    double error = 0;  ///< largest fall of sqrt(r M r) over the columns that did not get there
+    double error = 0;  ///< largest fall of sqrt(r M r) over the columns
     bool converged = false;
   };
   /// A x = b in every column from x = 0.  Components that A does not see stay 0 to rounding; b must have none.
@@ -49,22 +52,11 @@ class Multigrid {
 
   static constexpr std::uint32_t alone = 0xffffffff;  // held by nothing, in no aggregate
   BlockRows<B> matrix_;
+  std::vector<Tile<B, B>> inverse_;       // of the diagonal blocks
   std::vector<std::uint32_t> aggregate_;  // of each node
   std::vector<Vec3> offset_;              // of each node from the centre of its aggregate
   std::unique_ptr<Multigrid<6>> coarse_;
   std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;
 };
-
-/// Fills the inverses of the diagonal blocks; directions that a block does not resist get none.
-template <int B>
-void invert_diagonal(BlockRows<B>&);
-
-/// A as a sparse matrix.
-template <int B>
-Eigen::SparseMatrix<double> assemble(const BlockRows<B>&);
-
-/// Number of eigenvalues below `share` of the largest diagonal entry, by the inertia of A - shift (Sylvester).
-template <int B>
-std::size_t count_soft_modes(const BlockRows<B>&, double share);
 
 }  // namespace densify::dem

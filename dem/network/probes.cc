@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/check.h"
+#include "dem/network/elimination.h"
 #include "dem/network/multigrid.h"
 
 namespace densify::dem {
@@ -79,8 +80,11 @@ class Probe {
   }
   EdgeMatrices<B> matrices(std::size_t e) const { return {network_.edges[e], law_[e], length_}; }
   template <int C>
-  void balance(const Multigrid<B>&, const Stack<B, C>& b, const std::array<double, std::size_t(C)>& forces,
-               double tolerance, Stack<B, C>& x, CellResponse&) const;
+  CellResponse response(const ProbeSettings&) const;
+  /// Motions under the resultants `b` of forces whose squares sum up to `forces`; b is used up.
+  template <int C>
+  Stack<B, C> balance(Stack<B, C>& b, const std::array<double, std::size_t(C)>& forces, const ProbeSettings&,
+                      CellResponse&) const;
 
   const Network& network_;
   std::vector<EdgeLaw> law_;
@@ -138,27 +142,36 @@ BlockRows<B> Probe<B>::matrix() const {
     Matrix(a.diagonal[edges[e].i].data()) +=
         both.transpose() * m.stiffness * both + turn.transpose() * m.turning * turn;
   }
-  for (const auto& d : a.diagonal) {
+  // What nothing else resists would be resisted by rounding.
+  constexpr double ground = 1e-13;
+  for (auto& d : a.diagonal) {
     double trace = 0;
     for (int k = 0; k < B; ++k) trace += d[std::size_t(k * B + k)];
     a.scale.push_back(trace);
+    for (int k = 0; k < B; ++k) d[std::size_t(k * B + k)] += ground * trace;
   }
   return a;
 }
 
 template <int B>
 template <int C>
-void Probe<B>::balance(const Multigrid<B>& solver, const Stack<B, C>& b,
-                       const std::array<double, std::size_t(C)>& forces, double tolerance, Stack<B, C>& x,
-                       CellResponse& response) const {
+Stack<B, C> Probe<B>::balance(Stack<B, C>& b, const std::array<double, std::size_t(C)>& forces,
+                              const ProbeSettings& settings, CellResponse& response) const {
+  constexpr std::size_t most_neighbours = 10;  // more fill the core, fewer leave more iterations
+  Elimination<B> elimination(matrix(), most_neighbours);
+  const Multigrid<B> solver(elimination.take_core(), settings.direct_nodes);
+  response.bytes = elimination.bytes() + solver.bytes();
   // In a lattice the resultants are rounding; they need no relaxing.
   constexpr double rounding = 1e-13;
-  constexpr int most_iterations = 5000;
-  typename Multigrid<B>::template Goal<C> goal{tolerance, {}, most_iterations};
+  constexpr int most_iterations = 500;
+  typename Multigrid<B>::template Goal<C> goal{settings.tolerance, {}, most_iterations, settings.watch};
   for (std::size_t c = 0; c < std::size_t(C); ++c) goal.floor[c] = rounding * std::sqrt(forces[c]);
-  const auto report = solver.template solve<C>(b, x, goal);
-  response.iterations += report.iterations;
-  constexpr double usable = 1e-3;
+  Stack<B, C> core, x;
+  const auto report = solver.template solve<C>(elimination.template forward<C>(b), core, goal);
+  elimination.template back<C>(b, core, x);
+  response.iterations = report.iterations;
+  response.imbalance = report.error;
+  constexpr double usable = 1e-4;  // stresses go with its square
   if (!report.converged && !(report.error <= usable)) {
     char text[160];
     std::snprintf(
@@ -168,65 +181,62 @@ void Probe<B>::balance(const Multigrid<B>& solver, const Stack<B, C>& b,
         report.error, report.iterations);
     throw RunError(text);
   }
+  return x;
 }
 
 template <int B>
+template <int C>
 CellResponse Probe<B>::response(const ProbeSettings& settings) const {
   const auto& edges = network_.edges;
   CellResponse response;
-  Stack<B, 6> pull(network_.particles, Tile<B, 6>{});
-  Stack<B, 1> active(network_.particles, Tile<B, 1>{});
-  std::array<double, 6> forces{};  // squares, of all edges
-  std::array<double, 1> active_forces{};
+  // Column 6 is the cell at rest under the active forces.
+  auto moves = [&](std::size_t e, std::size_t c) {
+    return c < 6 ? Vec3(rate_[c] * edges[e].branch) : Vec3(Vec3::Zero());
+  };
+  auto active = [&](std::size_t e, std::size_t c) {
+    return c < 6 ? Vec3(Vec3::Zero()) : Vec3(law_[e].force * edges[e].normal);
+  };
+  auto add_stress = [&](std::size_t c, const Vec3& f, const Vec3& branch, Mat6& matrix, Vec6& at_rest) {
+    const Vec6 s = stress_of(f, branch) / settings.volume;
+    if (c < 6)
+      matrix.col(Eigen::Index(c)) += s;
+    else
+      at_rest += s;
+  };
+  Stack<B, C> pull(network_.particles, Tile<B, C>{});
+  std::array<double, std::size_t(C)> forces{};  // squares, of all edges
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const EdgeMatrices<B> m = matrices(e);
-    const Vec3& branch = edges[e].branch;
-    for (int c = 0; c < 6; ++c) {
-      const Vec3 f = m.stiffness * (rate_[std::size_t(c)] * branch);
-      response.affine.col(c) += stress_of(f, branch) / settings.volume;
-      forces[std::size_t(c)] += f.squaredNorm();
+    for (std::size_t c = 0; c < std::size_t(C); ++c) {
+      const Vec3 f = m.stiffness * moves(e, c) + active(e, c);
+      add_stress(c, f, edges[e].branch, response.affine, response.affine_active);
+      forces[c] += f.squaredNorm();
       const Motion on_i = m.i.transpose() * f, on_j = m.j.transpose() * f;
       for (int k = 0; k < B; ++k) {
-        pull[edges[e].i][std::size_t(k * 6 + c)] -= on_i[k];
-        if (!edges[e].at_wall) pull[edges[e].j][std::size_t(k * 6 + c)] -= on_j[k];
+        const std::size_t at = std::size_t(k * C) + c;
+        pull[edges[e].i][at] -= on_i[k];
+        if (!edges[e].at_wall) pull[edges[e].j][at] -= on_j[k];
       }
     }
-    const Vec3 f = law_[e].force * edges[e].normal;
-    response.affine_active += stress_of(f, branch) / settings.volume;
-    active_forces[0] += f.squaredNorm();
-    const Motion on_i = m.i.transpose() * f, on_j = m.j.transpose() * f;
-    for (int k = 0; k < B; ++k) {
-      active[edges[e].i][std::size_t(k)] -= on_i[k];
-      if (!edges[e].at_wall) active[edges[e].j][std::size_t(k)] -= on_j[k];
-    }
   }
-  Stack<B, 6> x;
-  Stack<B, 1> x_active(network_.particles, Tile<B, 1>{});
-  {
-    const Multigrid<B> solver(matrix(), settings.direct_nodes);
-    response.bytes = solver.bytes();
-    balance<6>(solver, pull, forces, settings.tolerance, x, response);
-    if (active_forces[0] > 0) balance<1>(solver, active, active_forces, settings.tolerance, x_active, response);
-  }
+  const Stack<B, C> x = balance<C>(pull, forces, settings, response);
   Mat6 power = Mat6::Zero();
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const EdgeMatrices<B> m = matrices(e);
     const std::uint32_t i = edges[e].i, j = edges[e].at_wall ? i : edges[e].j;  // at a wall m.j is zero
-    Eigen::Matrix<double, 3, 6> opening, turn;
-    for (int c = 0; c < 6; ++c) {
-      const Motion a = motion<6>(x, i, c), b = motion<6>(x, j, c);
-      opening.col(c) = rate_[std::size_t(c)] * edges[e].branch + m.i * a + m.j * b;
+    Eigen::Matrix<double, 3, C> opening, turn;
+    for (int c = 0; c < C; ++c) {
+      const Motion a = motion<C>(x, i, c), b = motion<C>(x, j, c);
+      opening.col(c) = moves(e, std::size_t(c)) + m.i * a + m.j * b;
       turn.col(c) = m.turn_i * a + m.turn_j * b;
     }
-    const Eigen::Matrix<double, 3, 6> f = m.stiffness * opening;
-    power += opening.transpose() * f + turn.transpose() * m.turning * turn;
-    for (int c = 0; c < 6; ++c) response.relaxed.col(c) += stress_of(f.col(c), edges[e].branch) / settings.volume;
-    const Vec3 still = m.stiffness * (m.i * motion<1>(x_active, i, 0) + m.j * motion<1>(x_active, j, 0)) +
-                       law_[e].force * edges[e].normal;
-    response.relaxed_active += stress_of(still, edges[e].branch) / settings.volume;
+    const Eigen::Matrix<double, 3, C> f = m.stiffness * opening;
+    power += (opening.transpose() * f + turn.transpose() * m.turning * turn).template topLeftCorner<6, 6>();
+    for (std::size_t c = 0; c < std::size_t(C); ++c)
+      add_stress(c, f.col(Eigen::Index(c)) + active(e, c), edges[e].branch, response.relaxed, response.relaxed_active);
   }
   const double largest = response.affine.cwiseAbs().maxCoeff();
-  constexpr double nothing = 1e-8;
+  constexpr double nothing = 1e-6;  // as good as the checks
   response.floppy = response.relaxed.cwiseAbs().maxCoeff() <= nothing * largest;
   if (response.floppy) {
     response.relaxed.setZero();
@@ -237,6 +247,12 @@ CellResponse Probe<B>::response(const ProbeSettings& settings) const {
     response.smallest_eigenvalue = Eigen::SelfAdjointEigenSolver<Mat6>(symmetric).eigenvalues()[0] / largest;
   }
   return response;
+}
+
+template <int B>
+CellResponse Probe<B>::response(const ProbeSettings& settings) const {
+  const bool active = std::any_of(law_.begin(), law_.end(), [](const EdgeLaw& l) { return l.force != 0; });
+  return active ? response<7>(settings) : response<6>(settings);
 }
 
 }  // namespace

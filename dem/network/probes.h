@@ -24,14 +24,9 @@ struct ProbeSettings {
   double volume;     ///< of the cell, or of the region [m^3]
   double tolerance;  ///< of the balance of forces: error of the motions in the energy norm, relative
   Rotation rotation;
-  std::size_t direct_nodes;  ///< networks of at most so many particles are factorised as a whole
+  std::size_t direct_nodes = 250;  ///< networks of at most so many particles, few neighbours eliminated, are factorised
+  std::function<void(double)> watch = {};  ///< called on the way with the error, which falls to `tolerance`
 };
-
-/// Where factorising is the faster or the surer way: networks of normal springs alone are nearly floppy, and multigrid
-/// is slow on them.
-constexpr std::size_t usual_direct_nodes(Rotation r) {
-  return r == Rotation::free ? 600 : 20000;
-}
 
 /// Stress of a cell as an affine function of its rate: stress = active + matrix x rate; unit that of the coefficients
 /// over m^2.
@@ -45,8 +40,9 @@ struct CellResponse {
   double power_mismatch = 0;       ///< largest |sum of f.v / V - stress.rate| over all pairs of rates (Hill-Mandel)
   double smallest_eigenvalue = 0;  ///< of the relaxed matrix
   bool floppy = false;             ///< nothing is left of the affine matrix: too few contacts; relaxed is then zero
-  int iterations = 0;              ///< of all solutions
-  std::size_t bytes = 0;           ///< memory of matrices
+  double imbalance = 0;            ///< of forces, what is left of it in the energy norm; stresses err with its square
+  int iterations = 0;
+  std::size_t bytes = 0;  ///< memory of matrices
 };
 
 /// Probes a network.  `law(edge)` gives each edge's EdgeLaw.  At a wall, or where an edge leaves the region, the far
