@@ -9,9 +9,9 @@
 #include "app/command_line.h"
 #include "app/comparison_report.h"
 #include "app/draw.h"
+#include "app/fem_program.h"
 #include "app/measured_moduli.h"
 #include "app/run.h"
-#include "app/voxel_program.h"
 #include "base/check.h"
 #include "dem/network/moduli.h"
 
@@ -136,7 +136,7 @@ Route by_voxels(const Body& body, const CompareCommand& command, double temperat
   for (const int n : command.voxels) words.insert(words.end(), {"--voxels", std::to_string(n)});
   if (command.quiet) words.push_back("--quiet");
   Route route{body.name, "voxels", {}};
-  code = run_voxel_program(words);
+  code = run_program(voxel_program, words);
   if (code != 0) return route;
   const dem::Hdf5Reader file(folder / "voxel_moduli.h5");
   auto column = [&](const char* name) { return file.read<double>(std::string("/moduli/") + name); };
@@ -198,7 +198,7 @@ int compare_command(const CompareCommand& command) {
   std::vector<dem::NeckModel> models;
   for (const std::string& name : command.models) models.push_back(dem::neck_model(name));
   if (!command.no_voxels)
-    require_voxel_program("compare-moduli with voxel elements", "; or leave them out with --no-voxels");
+    require_program(voxel_program, "compare-moduli with voxel elements", "; or leave them out with --no-voxels");
   Route measured;
   if (!command.measured.empty()) measured = read_measured_moduli(command.measured);
   std::set<std::string> taken;

@@ -8,12 +8,12 @@
 #include "app/check.h"
 #include "app/command_line.h"
 #include "app/compare_moduli.h"
+#include "app/fem_program.h"
 #include "app/moduli.h"
 #include "app/run.h"
 #include "app/stresses.h"
 #include "app/trade.h"
 #include "app/trade_ladder.h"
-#include "app/voxel_program.h"
 #include "base/check.h"
 #include "base/nearest.h"
 #include "base/version.h"
@@ -22,7 +22,8 @@
 namespace {
 
 int run_main(int argc, char** argv) {
-  if (argc > 1 && std::string_view(argv[1]) == "voxel-moduli") densify::app::become_voxel_program(argc, argv);
+  if (argc > 1 && std::string_view(argv[1]) == "voxel-moduli")
+    densify::app::become_program(densify::app::voxel_program, "voxel-moduli", {argv + 2, argv + argc});
   CLI::App app{"Densify: how a powder becomes a solid part under heat and pressure."};
   app.name("densify");
   app.footer(densify::app::exit_codes);
@@ -42,6 +43,8 @@ int run_main(int argc, char** argv) {
       ->add_option("--threads", run.threads,
                    "Threads; results do not depend on their number; without it one, or with realisations one a core")
       ->check(CLI::Range(1, 1024));
+  run_command->add_option("--ranks", run.ranks, "Processes (MPI) of a scene that presses a whole specimen")
+      ->check(CLI::Range(1, 4096));
   run_command->add_flag("--resume", run.resume, "Continue from the checkpoint in the folder of the results");
   run_command->add_flag("--quiet", run.quiet, "No progress, no summary");
 
@@ -118,6 +121,8 @@ int run_main(int argc, char** argv) {
       app.add_subcommand("help-ladder", "Every key of a ladder with unit, range, default and meaning");
   CLI::App* scene_command =
       app.add_subcommand("help-scene", "Every key of a scene with unit, range, default and meaning");
+  bool press_keys = false;
+  scene_command->add_flag("--press", press_keys, "Of a scene that presses a whole specimen");
   CLI::App* help_command = app.add_subcommand("help", "This text");
 
   std::vector<std::string> commands;
@@ -132,7 +137,14 @@ int run_main(int argc, char** argv) {
     const int code = app.exit(error);
     return code == 0 ? 0 : 2;
   }
+  if (run_command->parsed() && densify::app::is_press_scene(run.scene))
+    densify::app::become_program(densify::app::press_program, "a scene with [press]", {argv + 2, argv + argc});
   if (run_command->parsed()) return densify::app::run_command(run);
+  if (check_command->parsed() && densify::app::is_press_scene(check.scene)) {
+    std::vector<std::string> words{argv + 2, argv + argc};
+    words.push_back("--check");
+    densify::app::become_program(densify::app::press_program, "a scene with [press]", words);
+  }
   if (check_command->parsed()) return densify::app::check_command(check);
   if (bench_command->parsed()) return densify::app::bench_command(bench);
   if (moduli_command->parsed()) return densify::app::moduli_command(moduli);
@@ -140,6 +152,8 @@ int run_main(int argc, char** argv) {
   if (stresses_command->parsed()) return densify::app::stresses_command(stresses);
   if (trade_command->parsed()) return densify::app::trade_command(trade);
   if (ladder_command->parsed()) std::fputs(densify::app::ladder_help().c_str(), stdout);
+  if (scene_command->parsed() && press_keys)
+    densify::app::become_program(densify::app::press_program, "help-scene --press", {"--help-scene"});
   if (scene_command->parsed()) std::fputs(densify::dem::scene_help().c_str(), stdout);
   if (help_command->parsed()) std::fputs(app.help().c_str(), stdout);
   return 0;

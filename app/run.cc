@@ -7,6 +7,8 @@
 #include <thread>
 
 #include "app/progress_line.h"
+#include "base/check.h"
+#include "base/scene_document.h"
 #include "base/version.h"
 #include "dem/ensemble.h"
 
@@ -117,7 +119,14 @@ fs::path result_folder(const std::string& scene, const std::string& folder) {
   return fs::path("results") / name;
 }
 
+bool is_press_scene(const std::string& scene) {
+  const fs::path file = fs::is_directory(scene) ? fs::path(scene) / "scene.toml" : fs::path(scene);
+  return SceneDocument::from_file(file, {}).root().has("press");
+}
+
 int run_command(const RunCommand& command) {
+  if (command.ranks > 0)
+    throw InputError("--ranks: only a scene with [press] runs on several processes; take --threads");
   const dem::Scene scene = dem::read_scene(command.scene, command.overrides);
   const fs::path folder = result_folder(command.scene, command.folder);
   if (scene.realisations > 1) return run_realisations(scene, command, folder);

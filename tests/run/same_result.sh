@@ -57,6 +57,8 @@ done
 
 # Every shipped scene is valid.
 for scene in "$examples"/*/scene*.toml; do
+  # One that presses a specimen needs the program with finite elements, which the preset dem-only does not build.
+  if grep -q '^\[press\]' "$scene" && [ ! -x "$(dirname "$densify")/densify-press" ]; then continue; fi
   run_code check "$scene"
   [ "$code" -eq 0 ] && grep -q '^the scene is valid$' "$out" || fail "check $scene: $(cat "$err")"
 done

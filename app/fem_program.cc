@@ -1,4 +1,4 @@
-#include "app/voxel_program.h"
+#include "app/fem_program.h"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -34,15 +34,15 @@ int take_ranks(std::vector<std::string>& arguments) {
   return 1;
 }
 
-std::filesystem::path voxel_program() {
+std::filesystem::path beside_this(const std::string& program) {
   std::error_code failure;
-  return std::filesystem::read_symlink("/proc/self/exe", failure).parent_path() / "densify-voxel-moduli";
+  return std::filesystem::read_symlink("/proc/self/exe", failure).parent_path() / program;
 }
 
 /// The whole call, with mpirun before it when there are several ranks, and what the ranks need in the environment.
-std::vector<std::string> call_of(std::vector<std::string> words) {
+std::vector<std::string> call_of(const std::string& program, std::vector<std::string> words) {
   const int ranks = take_ranks(words);
-  words.insert(words.begin(), voxel_program().string());
+  words.insert(words.begin(), beside_this(program).string());
   if (ranks > 1) {
     setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);  // mpirun refuses root otherwise; containers have no other user
     setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
@@ -67,23 +67,23 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
 
 }  // namespace
 
-void require_voxel_program(const std::string& who, const std::string& otherwise) {
-  if (!std::filesystem::exists(voxel_program()))
+void require_program(const std::string& program, const std::string& who, const std::string& otherwise) {
+  if (!std::filesystem::exists(beside_this(program)))
     throw InputError(who +
                      " needs deal.II and PETSc, which this build was made without: take one that is not of preset "
                      "dem-only, with libdeal.ii-dev installed" +
                      otherwise);
 }
 
-void become_voxel_program(int argc, char** argv) {
-  require_voxel_program("voxel-moduli", "");
-  std::vector<std::string> words = call_of({argv + 2, argv + argc});
+void become_program(const std::string& program, const std::string& who, const std::vector<std::string>& arguments) {
+  require_program(program, who, "");
+  std::vector<std::string> words = call_of(program, arguments);
   execvp(words[0].c_str(), pointers_to(words).data());
   cannot_start(words[0]);
 }
 
-int run_voxel_program(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = call_of(arguments);
+int run_program(const std::string& program, const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = call_of(program, arguments);
   std::fflush(stdout);
   pid_t child;
   if (posix_spawnp(&child, words[0].c_str(), nullptr, nullptr, pointers_to(words).data(), environ) != 0)

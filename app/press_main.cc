@@ -1,0 +1,114 @@
+// densify run of a scene with [press]: the program with deal.II and PETSc; densify starts it.
+
+#include <deal.II/base/mpi.h>
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "app/command_line.h"
+#include "app/progress_line.h"
+#include "app/run.h"
+#include "base/check.h"
+#include "base/version.h"
+#include "coupling/press_case.h"
+
+namespace {
+
+using namespace densify;
+
+void print_summary(const coupling::PressScene& scene, const fem::PressRow& r, const std::filesystem::path& folder) {
+  const double radius = std::sqrt(r.volume / (std::numbers::pi * r.height));
+  fmt::print("\nrelative density {:.4f} +- {:.4f} numerical, from {:.4f} to {:.4f} in the body\n", r.density.mean,
+             r.density_error, r.density.least, r.density.most);
+  fmt::print("height {:.4f} mm, mean diameter {:.4f} mm, punch travel {:.4f} mm\n", 1e3 * r.height, 2e3 * radius,
+             1e3 * (scene.size.height - r.height));
+  fmt::print(
+      "work of punch and die {:.4g} J = {:.4g} J dissipated in the body + {:.4g} J by friction at the wall "
+      "{:+.4g} J on thermal strains {:+.4g} J stored, off by {:.2g} %\n",
+      r.work, r.dissipated, r.slid, r.thermal, r.stored,
+      100 * std::abs(1 - (r.dissipated + r.slid + r.thermal + r.stored) / r.work));
+  fmt::print("{} steps ({} rejected), {} Newton iterations\n", r.steps, r.rejected, r.iterations);
+  fmt::print("warnings: {}\n", scene.warnings.empty() ? "none" : std::to_string(scene.warnings.size()));
+  for (const auto& w : scene.warnings) fmt::print("  {}\n", w);
+  fmt::print("\nresults in {}\n", folder.string());
+}
+
+void print_check(const coupling::PressScene& scene) {
+  const auto& s = scene.size;
+  const bool plane = scene.geometry == coupling::PressGeometry::axisymmetric;
+  fmt::print("{}\n", scene.title);
+  fmt::print("specimen                        {:.4g} mm x {:.4g} mm, relative density {:.4g}\n", 2e3 * s.radius,
+             1e3 * s.height, scene.density);
+  fmt::print("elements                        {} x {} of degree {}, {}\n", s.radial, s.axial, scene.settings.degree,
+             plane ? "a body of revolution" : "over radius and height of a quarter in three dimensions");
+  fmt::print("process                         {:.4g} s in {} stages, then {:.4g} s of ejection\n",
+             scene.schedule->end(), scene.schedule->stages().size(), scene.press.ejection_time);
+  for (const auto& w : scene.warnings) fmt::print("warning: {}\n", w);
+  fmt::print("the scene is valid\n");
+}
+
+int run_main(int argc, char** argv) {
+  app::RunCommand run;
+  bool help_scene = false, check = false;
+  CLI::App command{"Press a whole specimen by finite elements."};
+  command.name("densify run");
+  command.footer(app::exit_codes);
+  auto* scene_option =
+      command.add_option("SCENE", run.scene, "A scene file with [press], or a folder that holds scene.toml");
+  command.add_option("--out", run.folder, "Folder of the results; without it results/NAME");
+  command.add_option("--set", run.overrides, "path.to.key=value, again for each")->take_all();
+  command.add_flag("--resume", run.resume, "Continue from the checkpoint in the folder of the results");
+  command.add_flag("--quiet", run.quiet, "No progress, no summary");
+  command.add_flag("--check", check, "Say what the scene comes to; run nothing");
+  command.add_flag("--help-scene", help_scene, "Every key of such a scene");
+  const bool first = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  try {
+    command.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (!first) return error.get_exit_code() == 0 ? 0 : 2;
+    return command.exit(error) == 0 ? 0 : 2;
+  }
+  if (help_scene) {
+    if (first) std::fputs(coupling::press_scene_help().c_str(), stdout);
+    return 0;
+  }
+  if (scene_option->count() == 0) throw InputError("SCENE is required");
+  const coupling::PressScene scene = coupling::read_press_scene(run.scene, run.overrides);
+  if (check) {
+    if (first) print_check(scene);
+    return 0;
+  }
+  app::ProgressLine line(run.quiet || !first);
+  coupling::PressOptions options;
+  options.folder = app::result_folder(run.scene, run.folder);
+  options.mode = run.resume ? dem::Continue::resume : dem::Continue::fresh;
+  options.version = std::string(version());
+  options.progress = [&](const dem::Progress& p) { line.show(p); };
+  options.stop = &app::catch_signals();
+  try {
+    const fem::PressRow last = coupling::run_press(scene, options, MPI_COMM_WORLD);
+    line.end();
+    if (first && !run.quiet) print_summary(scene, last, options.folder);
+  } catch (...) {
+    line.end();
+    throw;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int own_argc = 1;  // PETSc must not read this program's options
+  char** own_argv = argv;
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(own_argc, own_argv, 1);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+    std::freopen("/dev/null", "w", stderr);  // one rank complains for all
+  const int code = densify::app::guarded([&] { return run_main(argc, argv); });
+  // Input and steps that fail are the same on all ranks; what is not must not let the others wait for ever.
+  if (code != 0 && code != 2 && code != 3 && code != 5 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    MPI_Abort(MPI_COMM_WORLD, code);
+  return code;
+}

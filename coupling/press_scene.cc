@@ -1,0 +1,130 @@
+#include "coupling/press_scene.h"
+
+#include <limits>
+
+#include "base/scene_document.h"
+#include "base/section.h"
+
+namespace densify::coupling {
+
+namespace {
+
+constexpr double not_set = std::numeric_limits<double>::quiet_NaN();
+constexpr double wall_stiffness_factor = 100;  // a wall gives way a hundredth of what the dense solid would
+
+void read_size(Section& press, PressScene& scene) {
+  double diameter = not_set;
+  press.quantity("diameter", diameter, dim::length, Range::positive(), Need::required, "of the specimen and the die");
+  press.quantity("height", scene.size.height, dim::length, Range::positive(), Need::required,
+                 "of the powder before loading");
+  scene.size.radius = scene.press.die_radius = 0.5 * diameter;
+  press.quantity("relative_density", scene.density, dim::none, Range::inside(0.1, 1), Need::required,
+                 "of the powder before loading");
+  press.choice("geometry", scene.geometry,
+               {{"axisymmetric", PressGeometry::axisymmetric}, {"quarter", PressGeometry::quarter}}, Need::optional,
+               "a body of revolution, or a quarter of it in three dimensions");
+  scene.size.radial = 6, scene.size.axial = 8;
+  press.integer("elements_radial", scene.size.radial, 1, 1000, Need::optional,
+                "over the radius; a quarter has 2, 4, 8, ...");
+  press.integer("elements_axial", scene.size.axial, 1, 1000, Need::optional, "over the height");
+  press.integer("degree", scene.settings.degree, 1, 3, Need::optional, "of the displacements");
+}
+
+void read_die(Section& die, PressScene& scene) {
+  die.quantity("friction", scene.settings.friction, dim::none, Range::non_negative(), Need::optional,
+               "Coulomb's coefficient between body and die");
+  die.quantity("thermal_expansion", scene.press.die_expansion, dim::thermal_expansion, Range::any(), Need::optional,
+               "of the die");
+  die.quantity("ejection_time", scene.press.ejection_time, dim::time, Range::non_negative(), Need::optional,
+               "after the process the die leaves the body in this time; 0: it stays");
+  if (scene.settings.friction > 1 && !die.documenting())
+    scene.warnings.push_back("press.die.friction is above 1: few dies hold a body harder than they press it");
+}
+
+void read_material(Section& material, PressScene& scene) {
+  auto& p = scene.material;
+  p.viscosity = p.youngs_modulus = p.poissons_ratio = not_set;
+  material.quantity("viscosity", p.viscosity, dim::viscosity, Range::positive(), Need::required,
+                    "shear viscosity of the dense solid at reference_temperature");
+  material.quantity("activation_enthalpy", p.activation_enthalpy, dim::molar_energy, Range::non_negative(),
+                    Need::optional, "of the viscosity, which goes as exp(H/RT)");
+  material.quantity("reference_temperature", p.reference_temperature, dim::temperature, Range::positive(),
+                    Need::optional, "of the viscosity");
+  material.quantity("surface_energy", p.surface_energy, dim::surface_energy, Range::non_negative(), Need::optional,
+                    "of the pores: sintering stress 3 gamma/r times the density squared");
+  material.quantity("particle_radius", p.particle_radius, dim::length, Range::positive(), Need::optional,
+                    "r of the sintering stress");
+  material.quantity("youngs_modulus", p.youngs_modulus, dim::pressure, Range::positive(), Need::required,
+                    "of the dense solid");
+  material.quantity("poissons_ratio", p.poissons_ratio, dim::none, Range::inside(-1, 0.5), Need::required,
+                    "of the dense solid");
+  material.quantity("thermal_expansion", p.thermal_expansion, dim::thermal_expansion, Range::any(), Need::optional,
+                    "of the dense solid");
+  if (!material.documenting() && p.surface_energy > 0 && !material.has("particle_radius"))
+    material.fail_missing({"particle_radius"}, "surface_energy needs a particle_radius: the stress is 3 gamma/r");
+}
+
+void visit(Section root, PressScene& scene) {
+  root.text("title", scene.title, Need::optional, "a line for results and reports");
+  root.section("process", Need::required, "temperature and pressure over time",
+               [&](Section& process) { scene.schedule = read_schedule(process); });
+  root.section("press", Need::required, "a specimen in a die, by finite elements", [&](Section& press) {
+    read_size(press, scene);
+    press.section("die", Need::defaulted, "rigid and round", [&](Section& die) { read_die(die, scene); });
+    press.section("material", Need::required, "Skorohod and Olevsky's porous solid",
+                  [&](Section& material) { read_material(material, scene); });
+    press.section("steps", Need::defaulted, "of time", [&](Section& steps) {
+      steps.quantity("accuracy", scene.control.accuracy, dim::none, Range::inside(0, 0.1), Need::optional,
+                     "numerical error that the relative density may have at the end");
+      steps.quantity("balance", scene.settings.tolerance, dim::none, Range::inside(0, 1e-3), Need::optional,
+                     "of forces at the end of a step, relative to those within the elements");
+    });
+  });
+  root.section("output", Need::defaulted, "what is written", [&](Section& output) {
+    output.quantity("field_interval", scene.field_interval, dim::time, Range::non_negative(), Need::optional,
+                    "of the process, between fields for ParaView; 0: only at the ends of stages");
+    output.quantity("checkpoint_interval", scene.checkpoint_interval, dim::time, Range::non_negative(), Need::optional,
+                    "of the clock on the wall");
+  });
+}
+
+PressScene read(SceneDocument document) {
+  PressScene scene;
+  try {
+    visit(document.root(), scene);
+  } catch (const MissingKey& missing) {
+    SceneDocument all = SceneDocument::for_help();
+    PressScene ignored;
+    visit(all.root(), ignored);
+    throw InputError(missing.what() + missing.misspelling(all.declared_keys()));
+  }
+  document.reject_unknown();
+  scene.settings.wall_stiffness = wall_stiffness_factor * scene.material.youngs_modulus / scene.size.radius;
+  scene.effective_text = document.effective_text();
+  return scene;
+}
+
+std::filesystem::path scene_file(const std::filesystem::path& path) {
+  return std::filesystem::is_directory(path) ? path / "scene.toml" : path;
+}
+
+}  // namespace
+
+PressScene read_press_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  PressScene scene = read(SceneDocument::from_file(scene_file(path), overrides));
+  scene.file = scene_file(path);
+  return scene;
+}
+
+PressScene read_press_scene_text(std::string_view text, const std::vector<std::string>& overrides) {
+  return read(SceneDocument::from_text(text, "scene.toml", overrides));
+}
+
+std::string press_scene_help() {
+  SceneDocument all = SceneDocument::for_help();
+  PressScene ignored;
+  visit(all.root(), ignored);
+  return all.help_text();
+}
+
+}  // namespace densify::coupling

@@ -1,0 +1,313 @@
+#include "fem/press/press_body.h"
+
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/sparsity_tools.h>
+
+#include <numbers>
+#include <numeric>
+
+#include "fem/press/step_refused.h"
+
+namespace densify::fem {
+
+namespace {
+
+/// What an integral over the mesh is multiplied by to be that over the whole cylinder, besides the circumference.
+template <int dim>
+constexpr double copies = dim == 3 ? 4 : 1;
+
+constexpr double held_share = 0.01;        // of the largest slip of a step, that friction holds back like a spring
+constexpr int iterations_that_choose = 4;  // that spring's stiffness
+constexpr double rounding =
+    3e-8;                      // of the largest forces there have been: stresses are differences of strains of order 1
+constexpr int most_looks = 8;  // at places along a change of Newton's method
+constexpr int most_rounds = 30;  // of opening and closing points of the wall
+
+double sum(double value, MPI_Comm comm) {
+  return dealii::Utilities::MPI::sum(value, comm);
+}
+
+}  // namespace
+
+template <int dim>
+PressBody<dim>::PressBody(const CylinderSize& size, std::shared_ptr<const PointMaterial> material, double density,
+                          double temperature, const PressSettings& settings, MPI_Comm comm)
+    : comm_(comm),
+      settings_(settings),
+      material_(std::move(material)),
+      radius_(size.radius),
+      height_(size.height),
+      mesh_(comm, dealii::Triangulation<dim>::none, false,
+            dealii::parallel::shared::Triangulation<dim>::partition_zorder),
+      element_(dealii::FE_Q<dim>(unsigned(settings.degree)), dim),
+      mapping_(unsigned(settings.degree)),
+      points_of_cell_(unsigned(settings.degree) + 1),
+      points_of_face_(unsigned(settings.degree) + 1),
+      dofs_(mesh_),
+      solver_(comm),
+      start_temperature_(temperature),
+      temperature_(temperature) {
+  make_cylinder(mesh_, size);
+  dofs_.distribute_dofs(element_);
+  displacement_.reinit(dofs_.n_dofs());
+  before_ = tried_ = displacement_;
+  make_constraints();
+  make_points(density);
+}
+
+template <int dim>
+void PressBody<dim>::make_constraints() {
+  using namespace dealii;
+  const auto axial = [&] {
+    ComponentMask mask(dim, false);
+    mask.set(dim - 1, true);
+    return mask;
+  }();
+  const auto sorted = [&](const ComponentMask& mask, Face face) {
+    const IndexSet set = DoFTools::extract_boundary_dofs(dofs_, mask, {face});
+    return Dofs(set.begin(), set.end());
+  };
+  top_ = sorted(axial, top);
+  bottom_ = sorted(axial, bottom);
+  punch_.assign(dofs_.n_dofs(), 0);
+  for (const auto d : top_) punch_[d] = 1;
+  for (const auto d : bottom_) punch_[d] = 2;
+  const auto fix = [&](AffineConstraints<double>& c) {
+    for (const auto d : bottom_) c.add_line(d);
+    for (int side = 0; side < dim - 1; ++side) {
+      ComponentMask mask(dim, false);
+      mask.set(unsigned(side), true);
+      for (const auto d : sorted(mask, side == 0 ? symmetry_x : symmetry_y)) c.add_line(d);
+    }
+  };
+  fix(pressed_);
+  for (const auto d : top_)
+    if (d != top_.front()) {
+      pressed_.add_line(d);
+      pressed_.add_entry(d, top_.front(), 1.0);
+    }
+  fix(driven_);
+  for (const auto d : top_) driven_.add_line(d);
+  pressed_.close();
+  driven_.close();
+
+  DynamicSparsityPattern pattern(dofs_.n_dofs());
+  DoFTools::make_sparsity_pattern(dofs_, pattern, pressed_, true);
+  const IndexSet& owned = dofs_.locally_owned_dofs();
+  SparsityTools::distribute_sparsity_pattern(pattern, owned, comm_, DoFTools::extract_locally_relevant_dofs(dofs_));
+  matrix_.reinit(owned, owned, pattern, comm_);
+  residual_.reinit(owned, comm_);
+  change_.reinit(owned, comm_);
+}
+
+template <int dim>
+void PressBody<dim>::make_points(double density) {
+  dealii::FEValues<dim> values(mapping_, element_, points_of_cell_,
+                               dealii::update_JxW_values | dealii::update_quadrature_points);
+  std::size_t wall_points = 0;
+  for (const auto& cell : dofs_.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
+    values.reinit(cell);
+    for (const unsigned q : values.quadrature_point_indices())
+      weight_.push_back(values.JxW(q) * copies<dim> *
+                        (dim == 2 ? 2 * std::numbers::pi * values.quadrature_point(q)[0] : 1.0));
+    for (const auto& face : cell->face_iterators())
+      if (face->at_boundary() && face->boundary_id() == wall) wall_points += points_of_face_.size();
+  }
+  area_ = sum(std::accumulate(weight_.begin(), weight_.end(), 0.0), comm_) / height_;
+  motion_.resize(weight_.size());
+  for (PointMotion& m : motion_) m.before = m.after = Mat3::Identity();
+  answer_.resize(weight_.size());
+  const std::size_t n = material_->state_size();
+  state_.resize(n * weight_.size());
+  for (std::size_t k = 0; k < weight_.size(); ++k) material_->begin(density, std::span(state_).subspan(n * k, n));
+  tried_state_ = state_;
+  friction_.assign(wall_points, Vec3::Zero());
+  tried_friction_ = friction_;
+  accepted_closed_.assign(wall_points, 1);  // the body fills its die
+  closed_ = covered_ = accepted_closed_;
+  depth_.assign(wall_points, 0.0);
+}
+
+template <int dim>
+PressOutcome PressBody<dim>::try_step(const PressLoad& load) {
+  const auto& constraints = load.pressure ? pressed_ : driven_;
+  tried_temperature_ = load.temperature;
+  tried_step_ = load.step;
+  tried_ = displacement_;
+  if (last_step_ > 0)  // as the last step went on
+    tried_.sadd(1 + load.step / last_step_, -load.step / last_step_, before_);
+  if (!load.pressure)
+    for (const auto d : top_) tried_[d] = -load.punch_travel;
+
+  closed_ = accepted_closed_;
+  solver_.forget();  // so that a step is the same after a checkpoint
+  PressOutcome outcome;
+  for (outcome.rounds = 1;; ++outcome.rounds) {
+    balance(load, constraints, outcome);
+    if (revise_contact() == 0) return outcome;
+    if (outcome.rounds == most_rounds) throw StepRefused("which points touch the wall is not settled");
+  }
+}
+
+template <int dim>
+void PressBody<dim>::balance(const PressLoad& load, const dealii::AffineConstraints<double>& constraints,
+                             PressOutcome& outcome) {
+  double scale = 0, first = 0;
+  try {
+    scale = assemble(load, constraints, outcome);
+  } catch (const StepRefused&) {
+    // A guess that no point can follow: begin from rest instead.
+    if (outcome.rounds > 1 || last_step_ == 0 || !load.pressure) throw;
+    tried_ = displacement_;
+    scale = assemble(load, constraints, outcome);
+  }
+  for (int iteration = 0;; ++iteration) {
+    const double residual = residual_.l2_norm();
+    if (iteration == 0) first = residual;
+    if (!std::isfinite(residual)) throw StepRefused("forces of the body are no longer finite");
+    largest_scale_ = std::max(largest_scale_, scale);
+    const double balanced = std::max(settings_.tolerance * scale, rounding * largest_scale_);
+    if (residual <= balanced) return;
+    if (settings_.friction > 0 && outcome.rounds == 1 && iteration >= 1 && iteration <= iterations_that_choose)
+      if (choose_shear(outcome, iteration == 1)) scale = assemble(load, constraints, outcome);
+    if (iteration == settings_.most_iterations || residual > 1e6 * (first + scale))
+      throw StepRefused("Newton's method does not find balanced forces");
+    outcome.linear_iterations = solver_.solve(matrix_, change_, residual_, 1e-3);
+    ++outcome.iterations;
+    dealii::Vector<double> change(change_);  // of all ranks
+    constraints.distribute(change);
+    // The way along the change: less of it where its forces have turned, as when friction changes its direction.
+    const double drive = change_ * residual_;
+    const dealii::Vector<double> from = tried_;
+    double low = 0, high = 1, low_drive = drive, way = 1;
+    tried_.add(-1, change);
+    for (int look = 0;; ++look) {
+      try {
+        scale = assemble(load, constraints, outcome);
+      } catch (const StepRefused&) {
+        if (look == most_looks) throw;
+        high = way, way = 0.5 * (low + high);
+        tried_ = from;
+        tried_.add(-way, change);
+        continue;
+      }
+      const double now = change_ * residual_;
+      if (std::abs(now) <= 0.8 * std::abs(drive) || residual_.l2_norm() <= balanced || look == most_looks) break;
+      if (now > 0) {
+        if (way == 1) break;  // further than a Newton step it does not go
+        low = way, low_drive = now;
+        way = 0.5 * (low + high);
+      } else {
+        high = way;
+        way = low + std::clamp(low_drive / (low_drive - now), 0.1, 0.5) * (high - low);
+      }
+      tried_ = from;
+      tried_.add(-way, change);
+    }
+  }
+}
+
+template <int dim>
+double PressBody<dim>::deepest() const {
+  double most = 0;
+  for (std::size_t k = 0; k < closed_.size(); ++k)
+    if (closed_[k]) most = std::max(most, depth_[k]);
+  return dealii::Utilities::MPI::max(most, comm_);
+}
+
+template <int dim>
+bool PressBody<dim>::choose_shear(const PressOutcome& outcome, bool anew) {
+  const double slip = dealii::Utilities::MPI::max(outcome.largest_slip, comm_);
+  const double most = settings_.friction * settings_.wall_stiffness * deepest();
+  const double before = shear_;
+  if (slip > 0 && most > 0) shear_ = std::min(anew ? settings_.wall_stiffness : shear_, most / (held_share * slip));
+  return shear_ != before;
+}
+
+template <int dim>
+int PressBody<dim>::revise_contact() {
+  const double most = deepest();
+  int changes = 0;
+  for (std::size_t k = 0; k < closed_.size(); ++k) {
+    const bool now = covered_[k] && (closed_[k] ? depth_[k] >= -1e-4 * most : depth_[k] > 1e-4 * most);
+    changes += now != bool(closed_[k]);
+    closed_[k] = now;
+  }
+  return dealii::Utilities::MPI::sum(changes, comm_);
+}
+
+template <int dim>
+double PressBody<dim>::assemble(const PressLoad& load, const dealii::AffineConstraints<double>& constraints,
+                                PressOutcome& outcome) {
+  move_points(load, tried_);
+  matrix_ = 0;
+  residual_ = 0;
+  double within = 0;
+  outcome.forces = {};
+  outcome.dissipated = outcome.stored = outcome.thermal = outcome.slid = outcome.largest_slip = 0;
+  const Sink add = [&](const dealii::FullMatrix<double>& k, const dealii::Vector<double>& f, const Dofs& dofs) {
+    constraints.distribute_local_to_global(k, f, dofs, matrix_, residual_);
+  };
+  visit_elements(outcome.forces, within, add);
+  visit_wall(load, tried_, outcome, add);
+  for (std::size_t k = 0; k < answer_.size(); ++k) {
+    const double volume = weight_[k] * motion_[k].volume_after;
+    outcome.dissipated += volume * answer_[k].dissipated;
+    outcome.stored += volume * answer_[k].stored;
+    outcome.thermal += volume * answer_[k].thermal;
+  }
+  if (load.pressure && dealii::Utilities::MPI::this_mpi_process(comm_) == 0) {
+    dealii::Vector<double> force(1);
+    force[0] = *load.pressure * area_;
+    constraints.distribute_local_to_global(force, Dofs{top_.front()}, residual_);
+  }
+  matrix_.compress(dealii::VectorOperation::add);
+  residual_.compress(dealii::VectorOperation::add);
+  for (double* x :
+       {&outcome.forces.punch, &outcome.forces.bottom, &outcome.forces.wall_pressure, &outcome.forces.wall_friction,
+        &outcome.dissipated, &outcome.stored, &outcome.thermal, &outcome.slid, &within})
+    *x = sum(*x, comm_);
+  return std::sqrt(within) + (load.pressure ? *load.pressure * area_ : 0.0);
+}
+
+template <int dim>
+void PressBody<dim>::accept() {
+  for (PointMotion& m : motion_) {
+    m.turned = turned_after(m);
+    m.before = m.after;
+    m.volume_before = m.volume_after;
+  }
+  before_ = displacement_;
+  displacement_ = tried_;
+  state_ = tried_state_;
+  friction_ = tried_friction_;
+  accepted_closed_ = closed_;
+  temperature_ = tried_temperature_;
+  last_step_ = tried_step_;
+}
+
+template <int dim>
+void PressBody<dim>::forces_of(const PressLoad& load, const dealii::Vector<double>& displacement,
+                               dealii::Vector<double>& forces, dealii::FullMatrix<double>& tangent) {
+  move_points(load, displacement);
+  forces.reinit(dofs_.n_dofs());
+  tangent.reinit(dofs_.n_dofs(), dofs_.n_dofs());
+  const Sink add = [&](const dealii::FullMatrix<double>& k, const dealii::Vector<double>& f, const Dofs& dofs) {
+    forces.add(dofs, f);
+    for (unsigned i = 0; i < dofs.size(); ++i)
+      for (unsigned j = 0; j < dofs.size(); ++j) tangent(dofs[i], dofs[j]) += k(i, j);
+  };
+  PressOutcome outcome;
+  double within = 0;
+  visit_elements(outcome.forces, within, add);
+  visit_wall(load, displacement, outcome, add);
+}
+
+template class PressBody<2>;
+template class PressBody<3>;
+
+}  // namespace densify::fem

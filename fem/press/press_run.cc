@@ -1,0 +1,173 @@
+#include "fem/press/press_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "fem/press/gathered.h"
+#include "fem/press/step_refused.h"
+
+namespace densify::fem {
+
+namespace {
+
+constexpr double first_share = 0.01;         // of a stage, its first step
+constexpr double largest_share = 0.1;        // of a stage, any step
+constexpr double densification_scale = 0.5;  // over which the accuracy is spread
+constexpr double idle_share = 0.02;          // of it, for the time that passes
+constexpr double ejection_steps = 40;
+
+}  // namespace
+
+template <int dim>
+PressRun<dim>::PressRun(PressBody<dim>& body, const Schedule& schedule, const Press& press, const StepControl& control)
+    : body_(body),
+      schedule_(schedule),
+      press_(press),
+      control_(control),
+      end_(schedule.end() + press.ejection_time),
+      start_temperature_(schedule.temperature(0)) {
+  row_.stage = schedule.stages().front().name;
+  row_.temperature = start_temperature_;
+  row_.density = body.densities();
+  row_.height = body.height();
+  row_.volume = body.volume();
+}
+
+template <int dim>
+PressLoad PressRun<dim>::load_at(double time, double step) const {
+  const double temperature = schedule_.temperature(time);
+  PressLoad load{step, temperature, press_.die_radius * (1 + press_.die_expansion * (temperature - start_temperature_)),
+                 std::numeric_limits<double>::infinity(), schedule_.pressure(time)};
+  if (time > schedule_.end()) {  // the die goes down by the height of the body and a tenth
+    const double way = 1.1 * height_at_ejection_;
+    load.die_top = 1.05 * height_at_ejection_ - way * (time - schedule_.end()) / press_.ejection_time;
+    load.die_rise = -way * step / press_.ejection_time;
+    load.pressure = 0;
+  }
+  return load;
+}
+
+template <int dim>
+double PressRun<dim>::error_of(double step, const std::vector<double>& rate) const {
+  if (step_ == 0) return 0;
+  const double slope_step = 0.5 * (step_ + step_before_);
+  const double ahead = step_before_ > 0 ? 0.5 * (step + step_) / slope_step : 0;
+  const double share = step_before_ > 0 ? 1.0 / 12 : 0.5;
+  double squares = 0, all = 0;
+  for (std::size_t k = 0; k < rate.size(); ++k) {
+    const double expected = rate_[k] + (step_before_ > 0 ? ahead * (rate_[k] - rate_before_[k]) : 0);
+    squares += body_.weights()[k] * std::pow((rate[k] - expected) * step * share, 2);
+    all += body_.weights()[k];
+  }
+  return std::sqrt(dealii::Utilities::MPI::sum(squares, body_.comm()) / dealii::Utilities::MPI::sum(all, body_.comm()));
+}
+
+template <int dim>
+typename PressRun<dim>::Memory PressRun<dim>::memory() const {
+  return {row_,
+          next_,
+          step_,
+          step_before_,
+          height_at_ejection_,
+          gathered(rate_, body_.comm()),
+          gathered(rate_before_, body_.comm())};
+}
+
+template <int dim>
+void PressRun<dim>::restore(const Memory& m) {
+  row_ = m.row;
+  next_ = m.next, step_ = m.step, step_before_ = m.step_before, height_at_ejection_ = m.height_at_ejection;
+  rate_ = own_part(m.rate, body_.weights().size(), body_.comm());
+  rate_before_ = own_part(m.rate_before, body_.weights().size(), body_.comm());
+}
+
+template <int dim>
+const PressRow& PressRun<dim>::advance() {
+  const bool ejection = row_.time >= schedule_.end();
+  const double stage_end = ejection ? end_ : schedule_.next_breakpoint(row_.time);
+  const std::size_t stage = schedule_.stage_at(row_.time);
+  const double length = ejection ? press_.ejection_time : schedule_.stages()[stage].duration;
+  if (ejection && height_at_ejection_ == 0) height_at_ejection_ = row_.height;
+  if (next_ == 0) next_ = first_share * length;
+  next_ = std::min(next_, ejection ? length / ejection_steps : largest_share * length);
+  for (;;) {
+    double step = next_;
+    const double left = stage_end - row_.time;
+    if (step > 0.99 * left)
+      step = left;
+    else if (step > 0.5 * left)
+      step = 0.5 * left;
+    const double time = step == left ? stage_end : row_.time + step;
+    if (step < control_.smallest_step * end_)
+      throw RunError("the body takes no step of " + std::to_string(step) + " s at " + std::to_string(row_.time) +
+                     " s: " + row_.stage);
+    PressOutcome outcome;
+    double error = 0, allowed = 0;
+    std::vector<double> rate;
+    try {
+      outcome = body_.try_step(load_at(time, step));
+      rate = body_.densification();
+      double mean = 0, all = 0;
+      for (std::size_t k = 0; k < rate.size(); ++k) {
+        mean += body_.weights()[k] * std::abs(rate[k]), all += body_.weights()[k];
+        rate[k] /= step;
+      }
+      mean = dealii::Utilities::MPI::sum(mean, body_.comm()) / dealii::Utilities::MPI::sum(all, body_.comm());
+      error = error_of(step, rate);
+      allowed = control_.accuracy * (mean / densification_scale + idle_share * step / end_);
+    } catch (const StepRefused& refused) {
+      ++row_.rejected;
+      next_ = 0.4 * step;
+      if (next_ < control_.smallest_step * end_)
+        throw RunError(std::string(refused.what()) + ", however short the step, at " + std::to_string(row_.time) +
+                       " s");
+      continue;
+    }
+    row_.iterations += outcome.iterations;
+    const double order = step_before_ > 0 ? 3 : 2;
+    const double factor = error > 0 ? 0.85 * std::pow(allowed / error, 1 / order) : 2;
+    if (error > allowed && step > 1e-3 * length) {
+      ++row_.rejected;
+      next_ = step * std::clamp(factor, 0.2, 0.8);
+      continue;
+    }
+    const double height = row_.height;
+    body_.accept();
+    row_.time = time;
+    row_.temperature = schedule_.temperature(std::min(time, schedule_.end()));
+    row_.pressure = ejection ? 0 : schedule_.pressure(time);
+    row_.density = body_.densities();
+    row_.density_error += error * row_.density.mean;
+    row_.height = body_.height();
+    row_.volume = body_.volume();
+    row_.forces = outcome.forces;
+    row_.stored = outcome.stored;
+    row_.dissipated += outcome.dissipated;
+    row_.thermal += outcome.thermal;
+    row_.slid += outcome.slid;
+    const PressLoad load = load_at(time, step);
+    const double die_growth = load.die_radius - load_at(time - step, step).die_radius;
+    row_.work += outcome.forces.punch * (height - row_.height) - outcome.forces.wall_pressure * die_growth +
+                 outcome.forces.wall_friction * load.die_rise;
+    row_.step = step;
+    ++row_.steps;
+    next_ = std::max(next_, step) * std::clamp(factor, 0.3, 1.6);
+    if (time >= stage_end) {  // what comes may be another law: begin anew
+      step_ = step_before_ = 0;
+      next_ = 0;
+      row_.stage = time >= end_              ? row_.stage
+                   : time >= schedule_.end() ? "ejection"
+                                             : schedule_.stages()[schedule_.stage_at(time)].name;
+    } else {
+      step_before_ = step_, step_ = step;
+      rate_before_ = std::move(rate_), rate_ = std::move(rate);
+    }
+    return row_;
+  }
+}
+
+template class PressRun<2>;
+template class PressRun<3>;
+
+}  // namespace densify::fem

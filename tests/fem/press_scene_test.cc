@@ -1,0 +1,85 @@
+// Scenes that press a specimen: what they mean, and one test a mistake.
+
+#include "coupling/press_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "base/check.h"
+
+namespace densify::coupling {
+namespace {
+
+const char* const good = R"(
+[press]
+diameter = "13 mm"
+height = "8 mm"
+relative_density = 0.668
+[press.die]
+friction = 0.1
+[press.material]
+viscosity = "2.7e10 Pa s"
+youngs_modulus = "188 GPa"
+poissons_ratio = 0.31
+[process]
+start_temperature = "20 degC"
+[[process.stage]]
+name = "loading"
+duration = "33 min"
+pressure = "30 MPa"
+)";
+
+std::string mistake(const std::vector<std::string>& overrides, const std::string& text = good) {
+  try {
+    read_press_scene_text(text, overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+void expect_says(const std::string& message, std::initializer_list<const char*> parts) {
+  for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
+}
+
+TEST(PressScene, IsInSiUnits) {
+  const PressScene s = read_press_scene_text(good, {});
+  EXPECT_DOUBLE_EQ(s.size.radius, 6.5e-3);
+  EXPECT_DOUBLE_EQ(s.press.die_radius, 6.5e-3);
+  EXPECT_DOUBLE_EQ(s.size.height, 8e-3);
+  EXPECT_DOUBLE_EQ(s.material.viscosity, 2.7e10);
+  EXPECT_DOUBLE_EQ(s.schedule->end(), 1980);
+  EXPECT_TRUE(s.warnings.empty());
+}
+
+// What is written back is the same scene.
+TEST(PressScene, EffectiveTextReadsBack) {
+  const PressScene s = read_press_scene_text(good, {});
+  EXPECT_EQ(read_press_scene_text(s.effective_text, {}).effective_text, s.effective_text);
+}
+
+// The shipped one can be read.
+TEST(PressScene, OfTheExample) {
+  EXPECT_NEAR(read_press_scene(DENSIFY_EXAMPLES "/press_nial", {}).schedule->end(), 330 * 60, 1e-9);
+}
+
+TEST(PressScene, Mistakes) {
+  expect_says(mistake({"press.die.friction=-0.1"}), {"press.die.friction", ">= 0"});
+  expect_says(mistake({"press.material.poissons_ratio=0.5"}), {"press.material.poissons_ratio", "< 0.5"});
+  expect_says(mistake({"press.relative_density=1"}), {"press.relative_density", "< 1"});
+  expect_says(mistake({"press.height=8 MPa"}), {"press.height", "length"});
+  expect_says(mistake({"press.diametre=13 mm"}), {"press.diametre", "diameter"});
+  expect_says(mistake({"press.material.surface_energy=1 J/m^2"}), {"particle_radius", "3 gamma/r"});
+  expect_says(mistake({"press.geometry=cube"}), {"press.geometry", "axisymmetric"});
+  std::string text = good;
+  text.replace(text.find("height ="), 8, "heigth =");
+  expect_says(mistake({}, text), {"height", "heigth"});
+}
+
+TEST(PressScene, AFrictionAboveOneIsWarnedOf) {
+  const PressScene s = read_press_scene_text(good, {"press.die.friction=1.2"});
+  ASSERT_EQ(s.warnings.size(), 1u);
+  EXPECT_NE(s.warnings[0].find("press.die.friction"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace densify::coupling
