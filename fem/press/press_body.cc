@@ -243,7 +243,15 @@ int PressBody<dim>::revise_contact() {
 template <int dim>
 double PressBody<dim>::assemble(const PressLoad& load, const dealii::AffineConstraints<double>& constraints,
                                 PressOutcome& outcome) {
-  move_points(load, tried_);
+  // A point that refuses the step refuses it for all ranks.
+  std::string refused;
+  try {
+    move_points(load, tried_);
+  } catch (const StepRefused& error) {
+    refused = error.what();
+  }
+  if (sum(refused.empty() ? 0 : 1, comm_) > 0)
+    throw StepRefused(refused.empty() ? "a point of another rank refuses the step" : refused);
   matrix_ = 0;
   residual_ = 0;
   double within = 0;
