@@ -3,6 +3,7 @@
 #include <deal.II/base/mpi.h>
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -11,7 +12,6 @@
 #include "app/progress_line.h"
 #include "app/run.h"
 #include "base/check.h"
-#include "base/version.h"
 #include "coupling/press_case.h"
 
 namespace {
@@ -28,7 +28,8 @@ void print_summary(const coupling::PressScene& scene, const fem::PressRow& r, co
       "work of punch and die {:.4g} J = {:.4g} J dissipated in the body + {:.4g} J by friction at the wall "
       "{:+.4g} J on thermal strains {:+.4g} J stored, off by {:.2g} %\n",
       r.work, r.dissipated, r.slid, r.thermal, r.stored,
-      100 * std::abs(1 - (r.dissipated + r.slid + r.thermal + r.stored) / r.work));
+      100 * std::abs(r.work - r.dissipated - r.slid - r.thermal - r.stored) /
+          std::max({std::abs(r.work), std::abs(r.dissipated), std::abs(r.thermal), 1e-300}));
   fmt::print("{} steps ({} rejected), {} Newton iterations\n", r.steps, r.rejected, r.iterations);
   fmt::print("warnings: {}\n", scene.warnings.empty() ? "none" : std::to_string(scene.warnings.size()));
   for (const auto& w : scene.warnings) fmt::print("  {}\n", w);
@@ -41,8 +42,8 @@ void print_check(const coupling::PressScene& scene) {
   fmt::print("{}\n", scene.title);
   fmt::print("specimen                        {:.4g} mm x {:.4g} mm, relative density {:.4g}\n", 2e3 * s.radius,
              1e3 * s.height, scene.density);
-  fmt::print("elements                        {} x {} of degree {}, {}\n", s.radial, s.axial, scene.settings.degree,
-             plane ? "a body of revolution" : "over radius and height of a quarter in three dimensions");
+  fmt::print("elements                        {} of degree {}, {}\n", fem::element_count(s, plane ? 2 : 3),
+             scene.settings.degree, plane ? "a body of revolution" : "a quarter in three dimensions");
   fmt::print("process                         {:.4g} s in {} stages, then {:.4g} s of ejection\n",
              scene.schedule->end(), scene.schedule->stages().size(), scene.press.ejection_time);
   for (const auto& w : scene.warnings) fmt::print("warning: {}\n", w);
@@ -84,7 +85,6 @@ int run_main(int argc, char** argv) {
   coupling::PressOptions options;
   options.folder = app::result_folder(run.scene, run.folder);
   options.mode = run.resume ? dem::Continue::resume : dem::Continue::fresh;
-  options.version = std::string(version());
   options.progress = [&](const dem::Progress& p) { line.show(p); };
   options.stop = &app::catch_signals();
   try {

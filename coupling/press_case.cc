@@ -64,6 +64,7 @@ void Case<dim>::begin() {
   MPI_Barrier(comm_);
   history_ = press_history_header() + press_history_row(run_.row(), scene_.size);
   write_fields();
+  write_checkpoint();  // from here on it can be resumed
 }
 
 template <int dim>
@@ -80,7 +81,12 @@ void Case<dim>::resume() {
   // Rows up to the checkpoint; steps count them.
   std::istringstream rows(dem::read_whole_file(options_.folder / "history.csv"));
   std::string line;
-  for (int k = 0; k < c.row.steps + 2 && std::getline(rows, line); ++k) history_.append(line).append("\n");
+  for (int k = 0; k < c.row.steps + 2; ++k) {
+    if (!std::getline(rows, line))
+      throw InputError(fmt::format("{}: has lost rows that the checkpoint counts; start the run anew in another folder",
+                                   (options_.folder / "history.csv").string()));
+    history_.append(line).append("\n");
+  }
 }
 
 template <int dim>
@@ -159,14 +165,19 @@ fem::PressRow Case<dim>::run() {
 
 fem::PressRow run_press(const PressScene& scene, const PressOptions& options, MPI_Comm comm) {
   const unsigned ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
-  const int elements = scene.size.radial * scene.size.axial;
+  const int elements = fem::element_count(scene.size, scene.geometry == PressGeometry::axisymmetric ? 2 : 3);
   if (int(ranks) > elements)
     throw InputError(
         fmt::format("--ranks {}: the body has only {} elements; take fewer ranks or a finer mesh", ranks, elements));
-  std::optional<dem::ResultFolder> folder;
-  if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
-    folder.emplace(options.folder, options.mode, std::vector<std::string>{"checkpoint.h5", "history.csv"});
-  MPI_Barrier(comm);
+  std::optional<dem::ResultFolder> folder;  // held by rank 0, which speaks for all
+  std::string refused;
+  if (dealii::Utilities::MPI::this_mpi_process(comm) == 0) try {
+      folder.emplace(options.folder, options.mode, std::vector<std::string>{"checkpoint.h5"});
+    } catch (const InputError& error) {
+      refused = error.what();
+    }
+  refused = dealii::Utilities::MPI::broadcast(comm, refused, 0);
+  if (!refused.empty()) throw InputError(refused);
   if (scene.geometry == PressGeometry::axisymmetric) return Case<2>(scene, options, comm).run();
   return Case<3>(scene, options, comm).run();
 }

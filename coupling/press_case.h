@@ -16,7 +16,6 @@ namespace densify::coupling {
 struct PressOptions {
   std::filesystem::path folder;
   dem::Continue mode = dem::Continue::fresh;
-  std::string version;
   std::function<void(const dem::Progress&)> progress;  ///< on rank 0
   const std::atomic<bool>* stop = nullptr;             ///< ends the run with a checkpoint (Interrupted)
 };

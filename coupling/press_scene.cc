@@ -27,7 +27,9 @@ void read_size(Section& press, PressScene& scene) {
   press.integer("elements_radial", scene.size.radial, 1, 1000, Need::optional,
                 "over the radius; a quarter has 2, 4, 8, ...");
   press.integer("elements_axial", scene.size.axial, 1, 1000, Need::optional, "over the height");
-  press.integer("degree", scene.settings.degree, 1, 3, Need::optional, "of the displacements");
+  press.integer(
+      "degree", scene.settings.degree, 1, 2, Need::optional,
+      "of the displacements: 2 with pressures of degree 1, or 1 with one pressure an element, which is cheaper");
 }
 
 void read_die(Section& die, PressScene& scene) {
@@ -76,8 +78,9 @@ void visit(Section root, PressScene& scene) {
     press.section("steps", Need::defaulted, "of time", [&](Section& steps) {
       steps.quantity("accuracy", scene.control.accuracy, dim::none, Range::inside(0, 0.1), Need::optional,
                      "numerical error that the relative density may have at the end");
-      steps.quantity("balance", scene.settings.tolerance, dim::none, Range::inside(0, 1e-3), Need::optional,
-                     "of forces at the end of a step, relative to those within the elements");
+      steps.quantity("balance", scene.settings.tolerance, dim::none, Range::between(3e-8, 1e-3), Need::optional,
+                     "of forces at the end of a step, relative to the largest within the elements so far; stresses are "
+                     "differences of strains of order 1, which leave no less");
     });
   });
   root.section("output", Need::defaulted, "what is written", [&](Section& output) {
@@ -99,6 +102,8 @@ PressScene read(SceneDocument document) {
     throw InputError(missing.what() + missing.misspelling(all.declared_keys()));
   }
   document.reject_unknown();
+  if (scene.press.ejection_time > 0 && scene.schedule->pressure(scene.schedule->end()) > 0)
+    scene.warnings.push_back("the process ends under pressure: the punch lets go at once when ejection begins");
   scene.settings.wall_stiffness = wall_stiffness_factor * scene.material.youngs_modulus / scene.size.radius;
   scene.effective_text = document.effective_text();
   return scene;

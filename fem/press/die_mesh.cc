@@ -10,6 +10,11 @@ namespace densify::fem {
 
 namespace {
 
+/// Of a quarter of a disc whose coarsest mesh has three elements, two over the radius.
+int refinements(const CylinderSize& size) {
+  return std::max(0, int(std::lround(std::log2(size.radial / 2.0))));
+}
+
 template <int dim>
 void mark_faces(dealii::Triangulation<dim>& mesh, const CylinderSize& size) {
   const double small = 1e-8 * std::min(size.radius, size.height);
@@ -32,6 +37,10 @@ void mark_faces(dealii::Triangulation<dim>& mesh, const CylinderSize& size) {
 
 }  // namespace
 
+int element_count(const CylinderSize& size, int dim) {
+  return size.axial * (dim == 2 ? size.radial : 3 << (2 * refinements(size)));
+}
+
 template <>
 void make_cylinder(dealii::Triangulation<2>& mesh, const CylinderSize& size) {
   dealii::GridGenerator::subdivided_hyper_rectangle(mesh, {unsigned(size.radial), unsigned(size.axial)},
@@ -43,8 +52,7 @@ template <>
 void make_cylinder(dealii::Triangulation<3>& mesh, const CylinderSize& size) {
   dealii::Triangulation<2> disc, flat;
   dealii::GridGenerator::quarter_hyper_ball(disc, dealii::Point<2>(), size.radius);
-  const int refinements = std::max(0, int(std::lround(std::log2(size.radial / 2.0))));
-  disc.refine_global(unsigned(refinements));
+  disc.refine_global(unsigned(refinements(size)));
   dealii::GridGenerator::flatten_triangulation(disc, flat);
   dealii::GridGenerator::extrude_triangulation(flat, unsigned(size.axial) + 1, size.height, mesh);
   mark_faces(mesh, size);

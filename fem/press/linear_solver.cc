@@ -40,7 +40,6 @@ int LinearSolver::solve(const dealii::PETScWrappers::MPI::SparseMatrix& a, deali
     check(KSPSetOperators(solver_, matrix, matrix));
     check(KSPSetReusePreconditioner(solver_, old ? PETSC_TRUE : PETSC_FALSE));
     check(KSPSetTolerances(solver_, tolerance, 0, PETSC_DEFAULT, old ? most_iterations_of_an_old_one : 50));
-    if (!old) ++factorisations_;
     x = 0;
     check(KSPSolve(solver_, b, x));
     KSPConvergedReason reason;

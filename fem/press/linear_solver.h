@@ -23,12 +23,9 @@ class LinearSolver {
   /// The next system is another one: factorise it.
   void forget() { factorised_ = false; }
 
-  int factorisations() const { return factorisations_; }
-
  private:
   KSP solver_ = nullptr;
   bool factorised_ = false;
-  int factorisations_ = 0;
 };
 
 }  // namespace densify::fem

@@ -41,7 +41,7 @@ PressBody<dim>::PressBody(const CylinderSize& size, std::shared_ptr<const PointM
       radius_(size.radius),
       height_(size.height),
       mesh_(comm, dealii::Triangulation<dim>::none, false,
-            dealii::parallel::shared::Triangulation<dim>::partition_zorder),
+            dealii::parallel::shared::Triangulation<dim>::partition_custom_signal),
       element_(dealii::FE_Q<dim>(unsigned(settings.degree)), dim),
       mapping_(unsigned(settings.degree)),
       points_of_cell_(unsigned(settings.degree) + 1),
@@ -50,6 +50,11 @@ PressBody<dim>::PressBody(const CylinderSize& size, std::shared_ptr<const PointM
       solver_(comm),
       start_temperature_(temperature),
       temperature_(temperature) {
+  mesh_.signals.create.connect([&] {  // ranks have elements in their order: see gathered.h
+    const auto ranks = dealii::Utilities::MPI::n_mpi_processes(comm_);
+    for (const auto& cell : mesh_.active_cell_iterators())
+      cell->set_subdomain_id(cell->active_cell_index() * ranks / mesh_.n_active_cells());
+  });
   make_cylinder(mesh_, size);
   dofs_.distribute_dofs(element_);
   displacement_.reinit(dofs_.n_dofs());
@@ -169,14 +174,14 @@ void PressBody<dim>::balance(const PressLoad& load, const dealii::AffineConstrai
     const double residual = residual_.l2_norm();
     if (iteration == 0) first = residual;
     if (!std::isfinite(residual)) throw StepRefused("forces of the body are no longer finite");
-    largest_scale_ = std::max(largest_scale_, scale);
-    const double balanced = std::max(settings_.tolerance * scale, rounding * largest_scale_);
+    const double balanced = settings_.tolerance * std::max(scale, largest_scale_);
+    tried_scale_ = scale;
     if (residual <= balanced) return;
     if (settings_.friction > 0 && outcome.rounds == 1 && iteration >= 1 && iteration <= iterations_that_choose)
       if (choose_shear(outcome, iteration == 1)) scale = assemble(load, constraints, outcome);
     if (iteration == settings_.most_iterations || residual > 1e6 * (first + scale))
       throw StepRefused("Newton's method does not find balanced forces");
-    outcome.linear_iterations = solver_.solve(matrix_, change_, residual_, 1e-3);
+    solver_.solve(matrix_, change_, residual_, 1e-3);
     ++outcome.iterations;
     dealii::Vector<double> change(change_);  // of all ranks
     constraints.distribute(change);
@@ -294,6 +299,7 @@ void PressBody<dim>::accept() {
   state_ = tried_state_;
   friction_ = tried_friction_;
   accepted_closed_ = closed_;
+  largest_scale_ = std::max(largest_scale_, tried_scale_);
   temperature_ = tried_temperature_;
   last_step_ = tried_step_;
 }

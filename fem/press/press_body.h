@@ -27,7 +27,7 @@ struct PressSettings {
   int degree = 2;             ///< of the displacements; volume changes have the degree less one (element by element)
   double wall_stiffness = 0;  ///< DieWall::stiffness [Pa/m]
   double friction = 0;        ///< Coulomb's, between body and die
-  double tolerance = 1e-9;    ///< of the balance of forces, relative to those within the elements
+  double tolerance = 3e-8;    ///< of the balance of forces, relative to those within the elements
   int most_iterations = 40;   ///< of Newton's method
 };
 
@@ -52,9 +52,8 @@ struct PressForces {
 };
 
 struct PressOutcome {
-  int iterations = 0;         ///< Newton's
-  int rounds = 0;             ///< of points that touch the wall
-  int linear_iterations = 0;  ///< of the last system
+  int iterations = 0;  ///< Newton's
+  int rounds = 0;      ///< of points that touch the wall
   PressForces forces;
   double dissipated = 0;    ///< in the body during the step [J]
   double stored = 0;        ///< elastic energy of the body at the end [J]
@@ -92,8 +91,7 @@ class PressBody {
   /// Makes the step that was tried last the accepted state.
   void accept();
 
-  Densities densities() const;        ///< of the accepted state
-  Densities tried_densities() const;  ///< of the state that was tried
+  Densities densities() const;  ///< of the accepted state
   /// ln(density after/before) of every owned point of the step that was tried.
   std::vector<double> densification() const;
   std::vector<PointRecord> points() const;                        ///< owned ones, of the step that was accepted last
@@ -164,7 +162,7 @@ class PressBody {
   std::vector<PointAnswer> answer_;
   std::vector<double> state_, tried_state_;
   std::vector<Vec3> friction_, tried_friction_;  // of an owned point of the wall [Pa]
-  double largest_scale_ = 0;                     // of forces within the elements so far [N]
+  double largest_scale_ = 0, tried_scale_ = 0;   // of forces within the elements so far [N]
   double shear_ = 0;                             // DieWall::shear of this step [Pa/m]
   std::vector<char> closed_, accepted_closed_;   // it touches the wall
   std::vector<char> covered_;                    // it is below the die's upper end

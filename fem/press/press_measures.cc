@@ -39,13 +39,6 @@ Densities PressBody<dim>::densities() const {
 }
 
 template <int dim>
-Densities PressBody<dim>::tried_densities() const {
-  std::vector<double> volume;
-  for (const PointMotion& m : motion_) volume.push_back(m.volume_after);
-  return densities_of(tried_state_, volume);
-}
-
-template <int dim>
 std::vector<double> PressBody<dim>::densification() const {
   const std::size_t n = material_->state_size();
   std::vector<double> change;

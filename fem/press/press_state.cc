@@ -54,6 +54,9 @@ void PressBody<dim>::restore(const PressState& s) {
     for (const auto d : dofs) displacement_[d] = s.displacement[k], before_[d] = s.before[k++];
   }
   tried_ = displacement_;
+  const auto all = [&](std::size_t own) { return dealii::Utilities::MPI::sum(own, comm_); };
+  if (s.points.size() != each * all(motion_.size()) || s.wall.size() != wall_numbers * all(friction_.size()))
+    throw InputError("the checkpoint is of another mesh or material");
   std::size_t first = first_of_rank(motion_.size(), comm_);
   for (std::size_t p = 0; p < motion_.size(); ++p) {
     const double* x = s.points.data() + each * (first + p);

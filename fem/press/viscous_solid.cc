@@ -13,13 +13,23 @@ constexpr int most_iterations = 30;
 constexpr double tolerance = 1e-13;         // of the inelastic strain
 constexpr double density_increment = 1e-6;  // for derivatives of the law by the density
 
+/// The middle of a step: of the porosity, in its logarithm, which never lets a pore close in a step.
+double middle_density(double before, double after) {
+  return 1 - std::sqrt(std::max(1 - before, 0.0) * std::max(1 - after, 0.0));
+}
+
+/// How the density of the middle changes with ln(density) at the end.
+double middle_slope(double before, double after) {
+  return before < 1 && after < 1 ? 0.5 * std::sqrt((1 - before) / (1 - after)) * after : 0;
+}
+
 /// The law at the middle of the step, how it changes with the density there, and the stiffness at the end.
 struct LawOverStep {
   PorousResponse middle, slope;
   Mat6 stiffness, stiffness_slope;
 
   LawOverStep(const PorousLaw& law, double density_before, double density, const PointStep& step) {
-    const double density_middle = std::sqrt(density_before * density);
+    const double density_middle = middle_density(density_before, density);
     const double temperature = 0.5 * (step.temperature_before + step.temperature);
     middle = law.response(density_middle, temperature);
     const PorousResponse below = law.response(density_middle - density_increment, temperature);
@@ -41,7 +51,8 @@ void one_point(const PorousLaw& law, const PointStep& step, std::span<const doub
 
   Vec6 inelastic = Vec6::Zero();
   bool solved = false;
-  // r(x) = x - dt M(rho_m) (C(rho) (trial - x) - sigma_s(rho_m)), rho = rho_0 exp(-tr x), rho_m = sqrt(rho_0 rho)
+  // r(x) = x - dt M(rho_m) (C(rho) (trial - x) - sigma_s(rho_m)), rho = rho_0 exp(-tr x),
+  // 1 - rho_m = sqrt((1 - rho_0) (1 - rho))
   for (int k = 0; k < most_iterations; ++k) {
     const double density = density_before * std::exp(-inelastic.head<3>().sum());
     const LawOverStep at(law, density_before, density, step);
@@ -53,7 +64,7 @@ void one_point(const PorousLaw& law, const PointStep& step, std::span<const doub
     const Vec6 by_middle = step.step * (at.slope.fluidity * drive) - flow * at.slope.sintering_stress;
     Mat6 jacobian = Mat6::Identity() + flow * at.stiffness;
     jacobian.leftCols<3>().colwise() +=
-        0.5 * std::sqrt(density_before * density) * by_middle + density * (flow * stiffening);
+        middle_slope(density_before, density) * by_middle + density * (flow * stiffening);
     if (solved) {  // one more look, for the tangent at the solution
       const Mat6 moved = jacobian.partialPivLu().solve(flow * at.stiffness);
       answer.tangent = at.stiffness * (Mat6::Identity() - moved);
@@ -71,6 +82,12 @@ void one_point(const PorousLaw& law, const PointStep& step, std::span<const doub
     const double volume = std::abs(change.head<3>().sum());
     if (!std::isfinite(change.sum())) break;
     if (volume > 0.1) change *= 0.1 / volume;  // a density within reach of the slope
+    // No further towards full density than to a quarter of the porosity.
+    const double closing = -change.head<3>().sum(), all = -inelastic.head<3>().sum();
+    if (density < 1 && -closing > 0) {
+      const double most = std::log((1 - 0.25 * (1 - density)) / density_before) - all;
+      if (-closing > most) change *= most / -closing;
+    }
     inelastic -= change;
     solved = volume <= 0.1 && change.norm() <= tolerance + 1e-12 * inelastic.norm();
   }

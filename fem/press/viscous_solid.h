@@ -9,10 +9,10 @@
 namespace densify::fem {
 
 /// strain = elastic + thermal + inelastic; inelastic strain of a step = step x fluidity (stress - sintering stress),
-/// with the stress at its end and the rest at the density and temperature of its middle: L-stable, and of second order
-/// where the stress stands still.  Relative density rho_1 = rho_0 exp(-tr inelastic strain), exact.  The stress is that
-/// of the elastic strain, sigma = C(rho, T) eps_el, so that a stiffness that changes keeps no stress of the past.
-/// State: elastic strain (6), relative density.
+/// with the stress at its end and the rest at the density and temperature of its middle: as stiff as backward Euler,
+/// and of second order where the stress stands still.  Relative density rho_1 = rho_0 exp(-tr inelastic strain), exact.
+/// The stress is that of the elastic strain, sigma = C(rho, T) eps_el, so that a stiffness that changes keeps no stress
+/// of the past. State: elastic strain (6), relative density.
 class ViscousSolid : public PointMaterial {
  public:
   explicit ViscousSolid(std::shared_ptr<const PorousLaw> law) : law_(std::move(law)) {}

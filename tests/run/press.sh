@@ -42,8 +42,26 @@ for name in whole two; do tail -n 1 "$work/$name/history.csv" | cut -d, -f5,9; d
   awk -F, '{d[NR] = $1; h[NR] = $2} END {a = d[1] - d[2]; b = h[1] / h[2] - 1; exit !(a*a < 1e-14 && b*b < 1e-14)}' ||
   fail "two ranks differ from one by more than 1e-7"
 
+# Stopped on two ranks, it goes on on one.
+"$densify" run "$scene" --quiet --ranks 2 --set press.elements_radial=5 --set press.elements_axial=3 --out "$work/crossed" &
+pid=$!
+rows=0
+while [ "$rows" -lt 40 ]; do
+  sleep 0.05
+  [ ! -f "$work/crossed/history.csv" ] || rows=$(wc -l <"$work/crossed/history.csv")
+done
+kill -KILL "$pid" 2>/dev/null || true
+wait "$pid" 2>/dev/null || true
+pkill -KILL -f "$work/crossed" || true
+"$densify" run "$scene" --quiet --resume --set press.elements_radial=5 --set press.elements_axial=3 --out "$work/crossed"
+"$densify" run "$scene" --quiet --set press.elements_radial=5 --set press.elements_axial=3 --out "$work/straight"
+for name in crossed straight; do tail -n 1 "$work/$name/history.csv" | cut -d, -f5,9; done |
+  awk -F, '{d[NR] = $1; h[NR] = $2} END {a = d[1] - d[2]; b = h[1] / h[2] - 1; exit !(a*a < 1e-12 && b*b < 1e-12)}' ||
+  fail "resumed at another number of ranks it differs by more than 1e-6"
+
 refused "more than\|only 12 elements" "$densify" run "$scene" --ranks 13 --out "$work/many"
 refused "\[press\]" "$densify" run "$dem_scene" --ranks 2 --out "$work/dem"
 refused "press.die.friction" "$densify" run "$scene" --set press.die.friction=-1 --out "$work/negative"
 refused "scene is not the one" "$densify" run "$scene" --set press.die.friction=0.2 --resume --out "$work/whole"
+refused "whole" "$densify" run "$scene" --ranks 2 --out "$work/whole"
 for name in many dem negative; do [ ! -e "$work/$name" ] || fail "$name was written"; done
