@@ -1,6 +1,5 @@
 // densify run of a scene with [press]: the program with deal.II and PETSc; densify starts it.
 
-#include <deal.II/base/mpi.h>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -8,7 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "app/command_line.h"
+#include "app/mpi_main.h"
 #include "app/progress_line.h"
 #include "app/run.h"
 #include "base/check.h"
@@ -64,13 +63,8 @@ int run_main(int argc, char** argv) {
   command.add_flag("--quiet", run.quiet, "No progress, no summary");
   command.add_flag("--check", check, "Say what the scene comes to; run nothing");
   command.add_flag("--help-scene", help_scene, "Every key of such a scene");
-  const bool first = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-  try {
-    command.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (!first) return error.get_exit_code() == 0 ? 0 : 2;
-    return command.exit(error) == 0 ? 0 : 2;
-  }
+  const bool first = app::speaks();
+  if (const int code = app::parse_on_all(command, argc, argv); code >= 0) return code;
   if (help_scene) {
     if (first) std::fputs(coupling::press_scene_help().c_str(), stdout);
     return 0;
@@ -101,14 +95,5 @@ int run_main(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int own_argc = 1;  // PETSc must not read this program's options
-  char** own_argv = argv;
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(own_argc, own_argv, 1);
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
-    std::freopen("/dev/null", "w", stderr);  // one rank complains for all
-  const int code = densify::app::guarded([&] { return run_main(argc, argv); });
-  // Input and steps that fail are the same on all ranks; what is not must not let the others wait for ever.
-  if (code != 0 && code != 2 && code != 3 && code != 5 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-    MPI_Abort(MPI_COMM_WORLD, code);
-  return code;
+  return densify::app::mpi_main(argv, [&] { return run_main(argc, argv); });
 }

@@ -1,10 +1,6 @@
 // densify voxel-moduli: the program with deal.II and PETSc; densify starts it.
 
-#include <deal.II/base/mpi.h>
-
-#include <cstdio>
-
-#include "app/command_line.h"
+#include "app/mpi_main.h"
 #include "app/voxel_moduli.h"
 #include "base/check.h"
 
@@ -40,14 +36,7 @@ int run_main(int argc, char** argv) {
   app.add_option("--poissons-ratio", command.poissons_ratio,
                  "Of the random spheres' solid, of modulus 1; without it 0.3")
       ->check(CLI::Range(-0.9, 0.49));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    int rank;
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    if (rank > 0) return error.get_exit_code() == 0 ? 0 : 2;
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const int code = densify::app::parse_on_all(app, argc, argv); code >= 0) return code;
   if (!temperature.empty()) command.temperature = densify::app::parsed_temperature(temperature);
   return densify::app::voxel_command(command, MPI_COMM_WORLD);
 }
@@ -55,14 +44,5 @@ int run_main(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int own_argc = 1;  // PETSc must not read this program's options
-  char** own_argv = argv;
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(own_argc, own_argv, 1);
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
-    std::freopen("/dev/null", "w", stderr);  // one rank complains for all
-  const int code = densify::app::guarded([&] { return run_main(argc, argv); });
-  // Input and a solution that fails are the same on all ranks; what is not must not let the others wait for ever.
-  if (code != 0 && code != 2 && code != 3 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-    MPI_Abort(MPI_COMM_WORLD, code);
-  return code;
+  return densify::app::mpi_main(argv, [&] { return run_main(argc, argv); });
 }
