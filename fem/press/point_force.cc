@@ -103,6 +103,22 @@ struct Kinematics {
 
 }  // namespace
 
+Vec9 cofactor_column(const Mat3& f) {
+  const Mat3 c = cofactors<double>(f);
+  return Eigen::Map<const Vec9>(c.data());
+}
+
+Mat9 cofactor_slope(const Mat3& f) {
+  Mat9 h = Mat9::Zero();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {  // f(k,m) f(l,n) - f(k,n) f(l,m), as in cofactors()
+      const int k = (i + 1) % 3, l = (i + 2) % 3, m = (j + 1) % 3, n = (j + 2) % 3;
+      h(i + 3 * j, k + 3 * m) += f(l, n), h(i + 3 * j, l + 3 * n) += f(k, m);
+      h(i + 3 * j, k + 3 * n) -= f(l, m), h(i + 3 * j, l + 3 * m) -= f(k, n);
+    }
+  return h;
+}
+
 Vec6 step_strain(const PointMotion& m) {
   return Kinematics<double>(m, m.after, m.volume_after).strain;
 }

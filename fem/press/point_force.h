@@ -6,6 +6,8 @@
 namespace densify::fem {
 
 using Vec10 = Eigen::Matrix<double, 10, 1>;
+using Vec9 = Eigen::Matrix<double, 9, 1>;
+using Mat9 = Eigen::Matrix<double, 9, 9>;
 using Mat10 = Eigen::Matrix<double, 10, 10>;
 
 /// A point's motion over a step.  Axes: x y z, or r theta z.  The volume ratio is that of the element's few modes, not
@@ -23,6 +25,12 @@ Vec6 step_strain(const PointMotion&);
 
 /// The rotation from the frame of the material at the end of the step.
 Mat3 turned_after(const PointMotion&);
+
+/// det F F^-T, the derivative of det F by F, column by column.
+Vec9 cofactor_column(const Mat3& f);
+
+/// Its derivative by F, column by column.
+Mat9 cofactor_slope(const Mat3& f);
 
 /// The work of a stress on a virtual motion, per unit volume of the unloaded body: T : dF + p d(volume ratio).
 struct PointForce {

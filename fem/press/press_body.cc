@@ -6,25 +6,19 @@
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/sparsity_tools.h>
 
-#include <numbers>
 #include <numeric>
 
+#include "fem/press/axes.h"
 #include "fem/press/step_refused.h"
 
 namespace densify::fem {
 
 namespace {
 
-/// What an integral over the mesh is multiplied by to be that over the whole cylinder, besides the circumference.
-template <int dim>
-constexpr double copies = dim == 3 ? 4 : 1;
-
 constexpr double held_share = 0.01;        // of the largest slip of a step, that friction holds back like a spring
 constexpr int iterations_that_choose = 4;  // that spring's stiffness
-constexpr double rounding =
-    3e-8;                      // of the largest forces there have been: stresses are differences of strains of order 1
-constexpr int most_looks = 8;  // at places along a change of Newton's method
-constexpr int most_rounds = 30;  // of opening and closing points of the wall
+constexpr int most_looks = 8;              // at places along a change of Newton's method
+constexpr int most_rounds = 30;            // of opening and closing points of the wall
 
 double sum(double value, MPI_Comm comm) {
   return dealii::Utilities::MPI::sum(value, comm);
@@ -117,8 +111,7 @@ void PressBody<dim>::make_points(double density) {
     if (!cell->is_locally_owned()) continue;
     values.reinit(cell);
     for (const unsigned q : values.quadrature_point_indices())
-      weight_.push_back(values.JxW(q) * copies<dim> *
-                        (dim == 2 ? 2 * std::numbers::pi * values.quadrature_point(q)[0] : 1.0));
+      weight_.push_back(values.JxW(q) * around<dim>(values.quadrature_point(q)[0]));
     for (const auto& face : cell->face_iterators())
       if (face->at_boundary() && face->boundary_id() == wall) wall_points += points_of_face_.size();
   }

@@ -3,26 +3,15 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <numbers>
 
+#include "fem/press/axes.h"
 #include "fem/press/press_body.h"
 #include "fem/press/step_refused.h"
 
 namespace densify::fem {
 
 namespace {
-
-template <int dim>
-constexpr int axis(int component) {  // of a displacement, among r theta z or x y z
-  return dim == 2 && component == 1 ? 2 : component;
-}
-
-template <int dim>
-double around(double r) {
-  return dim == 3 ? 4.0 : 2 * std::numbers::pi * r;
-}
 
 /// Deformation gradients of an element's points for changes of its degrees of freedom: 9 rows (column by column) each.
 template <int dim>
@@ -65,24 +54,6 @@ Eigen::MatrixXd projection(const dealii::Quadrature<dim>& points, int degree, co
   const Eigen::MatrixXd weighted = weight.asDiagonal() * modes;
   const Eigen::MatrixXd gram = modes.transpose() * weighted;
   return modes * gram.ldlt().solve(weighted.transpose());
-}
-
-/// d cofactors(F)/dF of a matrix, both column by column: cof = det F F^-T.
-Eigen::Matrix<double, 9, 9> cofactor_slope(const Mat3& f) {
-  Eigen::Matrix<double, 9, 9> h = Eigen::Matrix<double, 9, 9>::Zero();
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const int k = (i + 1) % 3, l = (i + 2) % 3, m = (j + 1) % 3, n = (j + 2) % 3;  // f(k,m) f(l,n) - f(k,n) f(l,m)
-      h(i + 3 * j, k + 3 * m) += f(l, n), h(i + 3 * j, l + 3 * n) += f(k, m);
-      h(i + 3 * j, k + 3 * n) -= f(l, m), h(i + 3 * j, l + 3 * m) -= f(k, n);
-    }
-  return h;
-}
-
-Eigen::Matrix<double, 9, 1> cofactors(const Mat3& f) {
-  Mat3 c;
-  c.col(0) = f.col(1).cross(f.col(2)), c.col(1) = f.col(2).cross(f.col(0)), c.col(2) = f.col(0).cross(f.col(1));
-  return Eigen::Map<const Eigen::Matrix<double, 9, 1>>(c.data());
 }
 
 const auto element_needs =
@@ -140,7 +111,8 @@ void PressBody<dim>::visit_elements(PressForces& forces, double& within, const S
     cell->get_dof_indices(dofs);
     const Eigen::Map<const Eigen::VectorXd> weight(&weight_[first], points);
     const Eigen::MatrixXd to_few = projection(points_of_cell_, settings_.degree, weight);
-    for (unsigned q = 0; q < points; ++q) cofactor_rows.row(q) = cofactors(motion_[first + q].after).transpose() * b[q];
+    for (unsigned q = 0; q < points; ++q)
+      cofactor_rows.row(q) = cofactor_column(motion_[first + q].after).transpose() * b[q];
     const Eigen::MatrixXd few_rows = to_few * cofactor_rows;  // d(volume ratio)/du
     k.setZero(), f.setZero();
     for (unsigned q = 0; q < points; ++q) {

@@ -50,22 +50,24 @@ PressLoad PressRun<dim>::load_at(double time, double step) const {
 
 template <int dim>
 double PressRun<dim>::error_of(double step, const std::vector<double>& rate) const {
-  if (step_ == 0) {  // nothing to compare with: the square of its densification, of the order of its own error
-    double squares = 0, all = 0;
-    for (std::size_t k = 0; k < rate.size(); ++k)
-      squares += body_.weights()[k] * std::pow(rate[k] * step, 2), all += body_.weights()[k];
-    return dealii::Utilities::MPI::sum(squares, body_.comm()) / dealii::Utilities::MPI::sum(all, body_.comm());
-  }
+  // Nothing to compare with: the square of its densification, of the order of its own error.
+  if (step_ == 0) return mean(rate, [&](std::size_t, double r) { return std::pow(r * step, 2); });
   const double slope_step = 0.5 * (step_ + step_before_);
   const double ahead = step_before_ > 0 ? 0.5 * (step + step_) / slope_step : 0;
   const double share = step_before_ > 0 ? 1.0 / 12 : 0.5;
-  double squares = 0, all = 0;
-  for (std::size_t k = 0; k < rate.size(); ++k) {
+  return std::sqrt(mean(rate, [&](std::size_t k, double r) {
     const double expected = rate_[k] + (step_before_ > 0 ? ahead * (rate_[k] - rate_before_[k]) : 0);
-    squares += body_.weights()[k] * std::pow((rate[k] - expected) * step * share, 2);
-    all += body_.weights()[k];
-  }
-  return std::sqrt(dealii::Utilities::MPI::sum(squares, body_.comm()) / dealii::Utilities::MPI::sum(all, body_.comm()));
+    return std::pow((r - expected) * step * share, 2);
+  }));
+}
+
+template <int dim>
+double PressRun<dim>::mean(const std::vector<double>& values,
+                           const std::function<double(std::size_t, double)>& of) const {
+  double total = 0, all = 0;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    total += body_.weights()[k] * of(k, values[k]), all += body_.weights()[k];
+  return dealii::Utilities::MPI::sum(total, body_.comm()) / dealii::Utilities::MPI::sum(all, body_.comm());
 }
 
 template <int dim>
@@ -113,14 +115,10 @@ const PressRow& PressRun<dim>::advance() {
     try {
       outcome = body_.try_step(load_at(time, step));
       rate = body_.densification();
-      double mean = 0, all = 0;
-      for (std::size_t k = 0; k < rate.size(); ++k) {
-        mean += body_.weights()[k] * std::abs(rate[k]), all += body_.weights()[k];
-        rate[k] /= step;
-      }
-      mean = dealii::Utilities::MPI::sum(mean, body_.comm()) / dealii::Utilities::MPI::sum(all, body_.comm());
+      for (double& r : rate) r /= step;
       error = error_of(step, rate);
-      allowed = control_.accuracy * (mean / densification_scale + idle_share * step / end_);
+      const double densification = mean(rate, [&](std::size_t, double r) { return std::abs(r * step); });
+      allowed = control_.accuracy * (densification / densification_scale + idle_share * step / end_);
     } catch (const StepRefused& refused) {
       ++row_.rejected;
       next_ = 0.4 * step;

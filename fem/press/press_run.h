@@ -69,6 +69,8 @@ class PressRun {
  private:
   PressLoad load_at(double time, double step) const;
   double error_of(double step, const std::vector<double>& rate) const;
+  /// Of a function of values of the owned points, by unloaded volume; collective.
+  double mean(const std::vector<double>& values, const std::function<double(std::size_t, double)>& of) const;
 
   PressBody<dim>& body_;
   const Schedule& schedule_;
