@@ -7,8 +7,8 @@
 
 #include "base/check.h"
 #include "coupling/press_files.h"
+#include "coupling/press_material.h"
 #include "dem/io/atomic_file.h"
-#include "fem/press/viscous_solid.h"
 
 namespace densify::coupling {
 
@@ -22,16 +22,24 @@ std::string without_output(const std::string& text) {
   return text.substr(0, text.find("\n[output]"));
 }
 
+/// A wall gives way a hundredth of what the dense solid would.
+fem::PressSettings with_wall(const PressScene& scene, double dense_youngs_modulus) {
+  constexpr double factor = 100;
+  fem::PressSettings settings = scene.settings;
+  settings.wall_stiffness = factor * dense_youngs_modulus / scene.size.radius;
+  return settings;
+}
+
 template <int dim>
 class Case {
  public:
-  Case(const PressScene& scene, const PressOptions& options, MPI_Comm comm)
+  Case(const PressScene& scene, const PressMaterial& material, const PressOptions& options, MPI_Comm comm)
       : scene_(scene),
         options_(options),
         comm_(comm),
         first_(dealii::Utilities::MPI::this_mpi_process(comm) == 0),
-        body_(scene.size, std::make_shared<fem::ViscousSolid>(std::make_shared<fem::SkorohodOlevsky>(scene.material)),
-              scene.density, scene.schedule->temperature(0), scene.settings, comm),
+        body_(scene.size, material.point, scene.density, scene.schedule->temperature(0),
+              with_wall(scene, material.dense_youngs_modulus), comm),
         run_(body_, *scene.schedule, scene.press, scene.control) {}
 
   fem::PressRow run();
@@ -178,8 +186,9 @@ fem::PressRow run_press(const PressScene& scene, const PressOptions& options, MP
     }
   refused = dealii::Utilities::MPI::broadcast(comm, refused, 0);
   if (!refused.empty()) throw InputError(refused);
-  if (scene.geometry == PressGeometry::axisymmetric) return Case<2>(scene, options, comm).run();
-  return Case<3>(scene, options, comm).run();
+  const PressMaterial material = press_material(scene);
+  if (scene.geometry == PressGeometry::axisymmetric) return Case<2>(scene, material, options, comm).run();
+  return Case<3>(scene, material, options, comm).run();
 }
 
 }  // namespace densify::coupling

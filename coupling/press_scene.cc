@@ -4,13 +4,13 @@
 
 #include "base/scene_document.h"
 #include "base/section.h"
+#include "dem/io/scene_element.h"
 
 namespace densify::coupling {
 
 namespace {
 
 constexpr double not_set = std::numeric_limits<double>::quiet_NaN();
-constexpr double wall_stiffness_factor = 100;  // a wall gives way a hundredth of what the dense solid would
 
 void read_size(Section& press, PressScene& scene) {
   double diameter = not_set;
@@ -66,15 +66,35 @@ void read_material(Section& material, PressScene& scene) {
     material.fail_missing({"particle_radius"}, "surface_energy needs a particle_radius: the stress is 3 gamma/r");
 }
 
+void read_table(Section& table, PressScene& scene) {
+  std::string file;
+  table.text("file", file, Need::required, "that densify tabulate wrote, seen from the folder of the scene");
+  scene.table = table.directory() / file;
+  enum class Beyond { refuse, clamp } beyond = Beyond::refuse;
+  table.choice("extrapolate", beyond, {{"refuse", Beyond::refuse}, {"clamp", Beyond::clamp}}, Need::optional,
+               "where a point leaves the densities of the table: the run ends, or the last values stand");
+  scene.clamp = beyond == Beyond::clamp;
+}
+
 void visit(Section root, PressScene& scene) {
   root.text("title", scene.title, Need::optional, "a line for results and reports");
-  root.section("process", Need::required, "temperature and pressure over time",
-               [&](Section& process) { scene.schedule = read_schedule(process); });
+  std::optional<Section> process_place;
+  root.section("process", Need::required, "temperature and pressure over time", [&](Section& process) {
+    process_place = process;
+    scene.schedule = read_schedule(process);
+  });
   root.section("press", Need::required, "a specimen in a die, by finite elements", [&](Section& press) {
     read_size(press, scene);
+    press.choice("coupling", scene.coupling,
+                 {{"closed_form", Coupling::closed_form}, {"table", Coupling::table}, {"live", Coupling::live}},
+                 Need::optional,
+                 "what the material is: [press.material], [press.table], or a volume element [rve] in every element");
+    const auto need = [&](Coupling c) { return scene.coupling == c ? Need::required : Need::optional; };
     press.section("die", Need::defaulted, "rigid and round", [&](Section& die) { read_die(die, scene); });
-    press.section("material", Need::required, "Skorohod and Olevsky's porous solid",
+    press.section("material", need(Coupling::closed_form), "Skorohod and Olevsky's porous solid",
                   [&](Section& material) { read_material(material, scene); });
+    press.section("table", need(Coupling::table), "responses of volume elements",
+                  [&](Section& table) { read_table(table, scene); });
     press.section("steps", Need::defaulted, "of time", [&](Section& steps) {
       steps.quantity("accuracy", scene.control.accuracy, dim::none, Range::inside(0, 0.1), Need::optional,
                      "numerical error that the relative density may have at the end");
@@ -83,6 +103,9 @@ void visit(Section root, PressScene& scene) {
                      "differences of strains of order 1, which leave no less");
     });
   });
+  root.section("rve", scene.coupling == Coupling::live ? Need::required : Need::optional,
+               "the volume element, with the tables of a scene of particles",
+               [&](Section& element) { scene.element = dem::read_element(element, *process_place, *scene.schedule); });
   root.section("output", Need::defaulted, "what is written", [&](Section& output) {
     output.quantity("field_interval", scene.field_interval, dim::time, Range::non_negative(), Need::optional,
                     "of the process, between fields for ParaView; 0: only at the ends of stages");
@@ -104,7 +127,6 @@ PressScene read(SceneDocument document) {
   document.reject_unknown();
   if (scene.press.ejection_time > 0 && scene.schedule->pressure(scene.schedule->end()) > 0)
     scene.warnings.push_back("the process ends under pressure: the punch lets go at once when ejection begins");
-  scene.settings.wall_stiffness = wall_stiffness_factor * scene.material.youngs_modulus / scene.size.radius;
   scene.effective_text = document.effective_text();
   return scene;
 }

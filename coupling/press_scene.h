@@ -7,12 +7,20 @@
 #include <vector>
 
 #include "base/schedule.h"
+#include "dem/io/scene.h"
 #include "fem/press/porous_law.h"
 #include "fem/press/press_run.h"
 
 namespace densify::coupling {
 
 enum class PressGeometry { axisymmetric, quarter };
+
+/// What answers for the material at a point.
+enum class Coupling {
+  closed_form,  ///< Skorohod and Olevsky's solid
+  table,        ///< responses of volume elements, tabulated
+  live          ///< a volume element in every finite element
+};
 
 struct PressScene {
   std::string title;
@@ -24,9 +32,13 @@ struct PressScene {
   fem::PressSettings settings;
   fem::Press press{};
   fem::StepControl control;
+  Coupling coupling = Coupling::closed_form;
   fem::SkorohodOlevsky::Parameters material{};
-  double field_interval = 0;        ///< of the process [s]; 0: only ends of stages
-  double checkpoint_interval = 60;  ///< of the clock on the wall [s]
+  std::filesystem::path table;        ///< of responses
+  bool clamp = false;                 ///< beyond the ends of the table its last values stand
+  std::optional<dem::Scene> element;  ///< the volume element, where the scene has one
+  double field_interval = 0;          ///< of the process [s]; 0: only ends of stages
+  double checkpoint_interval = 60;    ///< of the clock on the wall [s]
   std::vector<std::string> warnings;
   std::string effective_text;  ///< all values in use; read again it is the same scene
 };

@@ -1,12 +1,16 @@
-#include "dem/io/scene.h"
-
 #include "base/nearest.h"
 #include "base/scene_document.h"
 #include "base/scene_node.h"
+#include "dem/io/scene_element.h"
 #include "dem/io/scene_parts.h"
 
 namespace densify::dem {
 namespace {
+
+void read_reference_temperature(Section& table, Scene& scene) {
+  table.quantity("reference_temperature", scene.reference_temperature, dim::temperature, Range::positive(),
+                 Need::optional, "at which sizes and densities are given");
+}
 
 void visit(Section root, Scene& scene, ScenePlaces& places) {
   root.text("title", scene.title, Need::optional, "a line for results and reports");
@@ -14,8 +18,7 @@ void visit(Section root, Scene& scene, ScenePlaces& places) {
       "realisations", scene.realisations, 1, 100000, Need::optional,
       "runs side by side, one a core: seeds of the packing counted up, or with specimen.perturbation its seeds; "
       "the history is their mean");
-  root.quantity("reference_temperature", scene.reference_temperature, dim::temperature, Range::positive(),
-                Need::optional, "at which sizes and densities are given");
+  read_reference_temperature(root, scene);
   read_materials(root, scene, places);
   read_interfaces(root, scene, places);
   read_powder(root, scene, places);
@@ -75,6 +78,28 @@ Scene read_scene(const std::filesystem::path& path, const std::vector<std::strin
 
 Scene read_scene_text(std::string_view text, const std::vector<std::string>& overrides) {
   return read(SceneDocument::from_text(text, "scene.toml", overrides));
+}
+
+Scene read_element(Section& element, const Section& process, const Schedule& schedule) {
+  Scene scene;
+  ScenePlaces places;
+  scene.schedule = schedule;
+  places.process = process;
+  read_reference_temperature(element, scene);
+  read_materials(element, scene, places);
+  read_interfaces(element, scene, places);
+  read_powder(element, scene, places);
+  read_specimen(element, scene, places);
+  read_contact(element, scene, places);
+  read_integration(element, scene, places);
+  read_guards(element, scene);
+  if (element.documenting()) return scene;
+  if (scene.container.shape != ContainerShape::periodic)
+    places.specimen->fail("shape", "a volume element is a periodic cell; set shape = \"periodic\"");
+  if (!scene.velocity_gradient.isZero(0))
+    places.cell->fail("velocity_gradient", "the specimen moves the cell of a volume element; remove it");
+  check_scene(scene, places);
+  return scene;
 }
 
 Scene with_overrides(const Scene& scene, const std::vector<std::string>& overrides) {

@@ -75,6 +75,40 @@ TEST(PressScene, Mistakes) {
   expect_says(mistake({}, text), {"height", "heigth"});
 }
 
+// A volume element stands in the same scene, in its own table, and follows the process of the specimen.
+const char* const element = R"(
+[rve.materials.NiAl]
+library = "NiAl"
+[[rve.powder]]
+material = "NiAl"
+number = 100
+sizes = "lognormal"
+mean = "3.97 um"
+standard_deviation = "2.50 um"
+minimum = "1.50 um"
+maximum = "18.61 um"
+[rve.specimen]
+shape = "periodic"
+[rve.contact]
+elasticity = "hertz"
+)";
+
+TEST(PressScene, HoldsAVolumeElement) {
+  const PressScene s = read_press_scene_text(good + std::string(element), {});
+  ASSERT_TRUE(s.element);
+  EXPECT_EQ(s.element->powder->components.size(), 1u);
+  EXPECT_DOUBLE_EQ(s.element->schedule.end(), 1980);
+  EXPECT_EQ(read_press_scene_text(s.effective_text, {}).effective_text, s.effective_text);
+}
+
+TEST(PressScene, MistakesOfACoupling) {
+  expect_says(mistake({"press.coupling=live"}), {"rve", "missing"});
+  expect_says(mistake({"press.coupling=table"}), {"press.table", "missing"});
+  const std::string both = good + std::string(element);
+  expect_says(mistake({"rve.specimen.shape=free"}, both), {"rve.specimen"});
+  expect_says(mistake({"rve.contact.elastisity=hertz"}, both), {"rve.contact.elastisity", "elasticity"});
+}
+
 TEST(PressScene, AFrictionAboveOneIsWarnedOf) {
   const PressScene s = read_press_scene_text(good, {"press.die.friction=1.2"});
   ASSERT_EQ(s.warnings.size(), 1u);
