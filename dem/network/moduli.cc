@@ -30,19 +30,8 @@ bool flows(const NetworkEdge& e) {
   return std::isfinite(e.law.viscosity) && e.law.viscosity > 0;
 }
 
-}  // namespace
-
-TensorAnswer elastic_answer(const SpecimenNetwork& s, const std::vector<Material>& materials, NeckModel model,
-                            const ModuliSettings& settings) {
-  return answer(s, elastic_laws(s, materials, model, settings.tangential), rotation_of(model), settings);
-}
-
-std::size_t count_flowing(const SpecimenNetwork& s) {
-  return std::size_t(std::count_if(s.network.edges.begin(), s.network.edges.end(), flows));
-}
-
-ViscousAnswer viscous_answer(const SpecimenNetwork& s, const ModuliSettings& settings) {
-  ViscousAnswer v{};
+/// Dashpots of the contacts; counts in `v` those that flow and those that are cut.
+std::vector<EdgeLaw> viscous_laws(const SpecimenNetwork& s, const ModuliSettings& settings, ViscousAnswer& v) {
   std::vector<double> flowing;
   for (const NetworkEdge& e : s.network.edges)
     if (flows(e)) flowing.push_back(e.law.viscosity);
@@ -58,13 +47,48 @@ ViscousAnswer viscous_answer(const SpecimenNetwork& s, const ModuliSettings& set
     v.rigid += eta == stiffest;
     laws.push_back({eta, settings.tangential_viscosity * eta, e.law.active});
   }
-  v.viscosity = answer(s, laws, Rotation::held, settings);
+  return laws;
+}
+
+}  // namespace
+
+TensorAnswer elastic_answer(const SpecimenNetwork& s, const std::vector<Material>& materials, NeckModel model,
+                            const ModuliSettings& settings) {
+  return answer(s, elastic_laws(s, materials, model, settings.tangential), rotation_of(model), settings);
+}
+
+std::size_t count_flowing(const SpecimenNetwork& s) {
+  return std::size_t(std::count_if(s.network.edges.begin(), s.network.edges.end(), flows));
+}
+
+ViscousAnswer viscous_answer(const SpecimenNetwork& s, const ModuliSettings& settings) {
+  ViscousAnswer v{};
+  v.viscosity = answer(s, viscous_laws(s, settings, v), Rotation::held, settings);
   v.sintering_stress = v.viscosity.response.relaxed_active;
   v.affine_sintering_stress = v.viscosity.response.affine_active;
   // A network that resists nothing has no rate of its own.
   v.free_strain_rate = v.viscosity.response.floppy ? Vec6(Vec6::Constant(unset))
                                                    : free_rate(v.viscosity.response.relaxed, v.sintering_stress);
   v.densification_rate = -v.free_strain_rate.head<3>().sum();
+  return v;
+}
+
+TensorAnswer unknown_elastic_answer() {
+  TensorAnswer a;
+  for (Mat6* c : {&a.response.affine, &a.response.relaxed}) c->setConstant(unset);
+  for (double* x : {&a.response.asymmetry, &a.response.power_mismatch, &a.response.smallest_eigenvalue,
+                    &a.response.imbalance, &a.seconds})
+    *x = unset;
+  a.relaxed = a.affine = {unset, unset, unset, unset, unset, unset};
+  return a;
+}
+
+ViscousAnswer unknown_viscous_answer(const SpecimenNetwork& s, const ModuliSettings& settings) {
+  ViscousAnswer v{};
+  viscous_laws(s, settings, v);
+  v.viscosity = unknown_elastic_answer();
+  for (Vec6* x : {&v.sintering_stress, &v.affine_sintering_stress, &v.free_strain_rate}) x->setConstant(unset);
+  v.densification_rate = unset;
   return v;
 }
 

@@ -29,7 +29,8 @@ struct TensorAnswer {
   double seconds = 0;  ///< wall time of the solution
 };
 
-/// Elastic stiffness [Pa].
+/// Elastic stiffness [Pa].  Throws RunError when forces cannot be balanced or the tensor fails its checks, as of a
+/// network that its springs hardly hold.
 TensorAnswer elastic_answer(const SpecimenNetwork&, const std::vector<Material>&, NeckModel, const ModuliSettings&);
 
 struct ViscousAnswer {
@@ -45,8 +46,12 @@ struct ViscousAnswer {
 /// Number of contacts that flow: sintering by their law.
 std::size_t count_flowing(const SpecimenNetwork&);
 
-/// Dashpots for springs, the necks as they are.  Needs contacts that flow.
+/// Dashpots for springs, the necks as they are.  Needs contacts that flow.  Throws RunError as elastic_answer.
 ViscousAnswer viscous_answer(const SpecimenNetwork&, const ModuliSettings&);
+
+/// What is known when no solution is good enough: NaN for tensors and what comes from them, contacts counted.
+TensorAnswer unknown_elastic_answer();
+ViscousAnswer unknown_viscous_answer(const SpecimenNetwork&, const ModuliSettings&);
 
 /// The particles' materials by volume with their moduli at the network's temperature: the dense body that the packing
 /// would become.  Throws InputError when a material that is there has no moduli.
