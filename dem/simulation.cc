@@ -310,7 +310,7 @@ double Simulation::leapfrog_step() {
   return step;
 }
 
-void Simulation::move() {
+void Simulation::move(const CellStretch* stretch) {
   if (!evaluated_) throw std::logic_error("Simulation::move needs evaluate before it");
   evaluated_ = refreshed_ = false;
   double step;
@@ -318,13 +318,14 @@ void Simulation::move() {
     if (!state_.inertia_free) drop_inertia();
     const double longest = setup_.integration.largest_step;
     step = inertia_free_.move(state_, setup_, table_, pores(), state_.punch.mass > 0 ? punch_wall_ : std::nullopt,
-                              std::isnan(longest) ? setup_.schedule.end() : longest);
+                              std::isnan(longest) ? setup_.schedule.end() : longest, stretch);
     may_have_travelled_ = std::numeric_limits<double>::infinity();
   } else {
     step = leapfrog_step();
   }
-  const double breakpoint = setup_.schedule.next_breakpoint(state_.time);
-  state_.time = state_.time + step >= breakpoint ? breakpoint : state_.time + step;
+  double until = setup_.schedule.next_breakpoint(state_.time);
+  if (stretch) until = std::min(until, stretch->end);
+  state_.time = step >= until - state_.time ? until : state_.time + step;
   state_.last_step = step;
   ++state_.steps;
 }

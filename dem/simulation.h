@@ -121,7 +121,15 @@ class Simulation {
   /// throws std::logic_error.  Throws RunError when the state is no longer sound.
   void evaluate(Recording* record);
   /// Second half of a step: chooses its length and moves particles, punch and cell.  Needs `evaluate` before.
-  void move();
+  void move() { move(nullptr); }
+  /// Strains the cell at a constant rate up to a process time, in as many steps without inertia as the error of each
+  /// asks for, and says what it answered.  Needs a periodic cell that nothing else drives, without inertia from the
+  /// start, else throws std::logic_error.
+  CellAnswer strain(CellStretch);
+  /// How the answer of strain(), just called, changes with the rate; once.
+  CellTangent strain_tangent() { return inertia_free_.tangent(state_, setup_, state_.time - strained_from_); }
+  /// Velocities against the cell at the end of strain() [m/s].
+  const Eigen::VectorXd& strain_velocities() const { return inertia_free_.velocity(); }
   /// One step, or the rest of it after an `evaluate`.
   void advance(Recording* record = nullptr) {
     if (!evaluated_) evaluate(record);
@@ -185,6 +193,7 @@ class Simulation {
   std::size_t near_pairs() const { return pass_.near().places().size(); }  ///< that a pass visits
 
  private:
+  void move(const CellStretch*);
   void set_environment();
   void keep_list_fresh();
   void measure_pores();
@@ -225,6 +234,7 @@ class Simulation {
   double may_have_travelled_ = 0, list_slack_ = 0;
   std::vector<double> expansion_step_;
   std::optional<std::size_t> punch_wall_;
+  double strained_from_ = 0;  // process time at which the last strain() began [s]
   Mat3 cell_stress_ = Mat3::Zero();
   double pore_scale_ = 1;  // PoreClosure::scale
 };

@@ -85,6 +85,26 @@ double Simulation::cell_leap() const {
   return std::sqrt(leap * state_.cell_drive.mass / (state_.cell.volume() * excess));
 }
 
+CellAnswer Simulation::strain(CellStretch stretch) {
+  if (!state_.cell.periodic || setup_.cell_path || setup_.integration.inertia_free.from != InertiaFreeFrom::start ||
+      setup_.integration.method != IntegrationMethod::inertia_free)
+    throw std::logic_error("Simulation::strain needs a free periodic cell without inertia from the start");
+  strained_from_ = state_.time;
+  int steps = 0;
+  double error = 0;
+  while (state_.time < stretch.end) {
+    if (!evaluated_) evaluate(nullptr);
+    move(&stretch);
+    error += inertia_free_.error();
+    ++steps;
+    stretch.guess = nullptr;
+  }
+  CellAnswer answer = inertia_free_.answer();
+  answer.error = error;
+  answer.steps = steps;
+  return answer;
+}
+
 void Simulation::drive_cell(LeapfrogSteps steps) {
   constexpr double furthest = 0.05;  // strain of one step
   constexpr double apart = 1.05;     // of the volume at which particles touched last

@@ -1,6 +1,7 @@
 #include "dem/integrate/cell_step.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +10,7 @@
 namespace densify::dem {
 
 void CellStep::begin(const State& s, const Setup& setup, double step, double end, double mass) {
+  stretched_ = false;
   gradient_ = before_ = s.cell.velocity_gradient;
   free_.clear();
   goal_.clear();
@@ -31,9 +33,17 @@ void CellStep::begin(const State& s, const Setup& setup, double step, double end
   inertia_ = mass * std::pow(s.cell.volume(), 2.0 / 3) / 12 / step;
 }
 
+void CellStep::begin(const State& s, const CellStretch& stretch, double step) {
+  stretched_ = true;
+  before_ = s.cell.velocity_gradient;
+  free_.clear();
+  const Eigen::SelfAdjointEigenSolver<Mat3> strain(step * stretch.rate);
+  const Vec3 longer = strain.eigenvalues().array().unaryExpr([](double e) { return std::expm1(e); });
+  gradient_ = strain.eigenvectors() * longer.asDiagonal() * strain.eigenvectors().transpose() / step;
+}
+
 void CellStep::clear(Eigen::Index rows) {
   const auto m = Eigen::Index(free_.size());
-  branch_.clear();
   pull_.assign(free_.size(), Eigen::VectorXd::Zero(rows));
   own_ = Eigen::MatrixXd::Zero(m, m);
   resultant_ = Eigen::VectorXd::Zero(m);
@@ -41,7 +51,6 @@ void CellStep::clear(Eigen::Index rows) {
 }
 
 void CellStep::add(const NetworkOperator& network, const NetworkLink& link, const Vec3& branch, const Vec3& force) {
-  branch_.push_back(branch);
   scale_ += std::abs(force.dot(branch)) / 3;
   for (std::size_t d = 0; d < free_.size(); ++d) {
     const auto [i, j] = tensor_places[free_[d]];

@@ -79,7 +79,7 @@ struct InertiaFree::Trial {
 };
 
 InertiaFree::Trial InertiaFree::prepare(const State& s, const Setup& setup, const PairTable& table,
-                                        std::optional<std::size_t> guided, double step) {
+                                        std::optional<std::size_t> guided, double step, const CellStretch* stretch) {
   Trial t{step, s.time + step, 1, 0, guided};
   const double breakpoint = setup.schedule.next_breakpoint(s.time);
   if (t.end >= breakpoint) t.end = breakpoint;
@@ -106,6 +106,10 @@ InertiaFree::Trial InertiaFree::prepare(const State& s, const Setup& setup, cons
   for (std::size_t p = 0; p < s.particles.size(); ++p)
     inertia_.segment<3>(Eigen::Index(3 * p)).setConstant(scaling / (s.particles.body[p].inverse_mass * t.step));
   if (guided) inertia_[network_.rows() - 1] = kept * s.punch.mass / t.step;
+  if (stretch) {
+    cell_.begin(s, *stretch, t.step);
+    return t;
+  }
   double mass = 0;
   for (const Body& b : s.particles.body) mass += scaling / b.inverse_mass;
   cell_.begin(s, setup, t.step, t.end, mass);
@@ -149,6 +153,7 @@ void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t, do
   double squares = external_.squaredNorm();
   const bool deforming = s.cell.periodic && !cell_.gradient().isZero(0);
   cell_.clear(network_.rows());
+  forces_.clear();
   const double lateral_share = setup.integration.inertia_free.tangential_share;
   // Pores close with the powder's density, as they will have when the next pass meets them.
   if (pores_.density)
@@ -191,6 +196,7 @@ void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t, do
     // which the matrix leaves out to stay definite.
     if (!view.at_wall) link.lateral += t.step * std::max(0.0, force.total) / view.branch.norm();
     network_.add(link);
+    forces_.push_back({view.branch, on_i});
     if (cell_.balances()) cell_.add(network_, link, view.branch, on_i);
     const double passive = force.total - force.sintering;  // the two may cancel
     squares += passive * passive + force.sintering * force.sintering;
@@ -245,7 +251,7 @@ double InertiaFree::error_estimate(const State& s, const Trial& t) const {
   for (std::size_t k = 0; k < network_.links().size(); ++k) {
     const NetworkLink& link = network_.links()[k];
     double along = network_.relative(link, difference).dot(link.normal);
-    if (cell_.balances()) along += cell_.change_along(k, link.normal);
+    if (cell_.changes()) along += cell_.change_along(forces_[k], link.normal);
     sum += std::abs(along);
   }
   const double count = std::max<double>(1, double(network_.links().size()));
@@ -277,19 +283,22 @@ void InertiaFree::apply(State& s, const Trial& t) const {
 }
 
 double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, const PoreClosure& pores,
-                         std::optional<std::size_t> guided, double longest) {
+                         std::optional<std::size_t> guided, double longest, const CellStretch* stretch) {
   pores_ = pores;
   const InertiaFreeSettings& settings = setup.integration.inertia_free;
   network_ = NetworkOperator(s.particles.size(), guided ? std::optional(Vec3(Vec3::UnitZ())) : std::nullopt);
   network_.reserve(s.contacts.size() + s.walls.contacts().size());
+  forces_.reserve(s.contacts.size() + s.walls.contacts().size());
   before_.resize(network_.rows());
   for (std::size_t p = 0; p < s.particles.size(); ++p)
     before_.segment<3>(Eigen::Index(3 * p)) = s.particles.body[p].velocity;
   if (guided) before_[network_.rows() - 1] = s.punch.velocity;
 
   const bool fixed = !std::isnan(settings.fixed_step);
-  const double left = setup.schedule.next_breakpoint(s.time) - s.time;
-  constexpr double first_share = 1e-4;  // of the way to the next breakpoint, when nothing is known yet
+  const double breakpoint = setup.schedule.next_breakpoint(s.time);
+  const double left = (stretch ? std::min(stretch->end, breakpoint) : breakpoint) - s.time;
+  // Of the way to the next breakpoint, when nothing is known yet; an owner's way is a step of his already.
+  const double first_share = stretch ? 1 : 1e-4;
   double step = fixed ? settings.fixed_step : s.stable_step > 0 ? s.stable_step : first_share * left;
   const double proposed = step;
   double last_error = std::numeric_limits<double>::infinity();
@@ -301,8 +310,8 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, c
       h = left;
     else if (left < 2 * h)
       h = 0.5 * left;
-    const Trial trial = prepare(s, setup, table, guided, h);
-    velocity_ = before_;
+    const Trial trial = prepare(s, setup, table, guided, h, stretch);
+    velocity_ = stretch && stretch->guess && h == left ? *stretch->guess : before_;
     // A contact that breaks lets go of its force at once: no shorter step balances it, the next one does.
     const bool solved = balance(s, setup, trial);
     const bool breaks = !solved && h < breaking_share * std::min(proposed, left) &&
@@ -323,6 +332,7 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, c
     if (balanced) last_error = error;
     if (balanced && (fixed || breaks || error <= 1 || snapped)) {
       apply(s, trial);
+      error_ = error * settings.step_tolerance;
       ++count_.steps;
       crawling_ = h < crawling_share * setup.schedule.end() && h < left ? crawling_ + 1 : 0;
       if (crawling_ > most_crawling)
@@ -347,9 +357,40 @@ double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, c
   }
 }
 
+/// Links as the whole of several steps sees them, of which the last was `last` long: springs give way all the time,
+/// dashpots only flow.
+void InertiaFree::respond_over(const State& s, const Setup& setup, double whole, double last) {
+  std::vector<NetworkLink> links = network_.links();
+  const double lateral_share = setup.integration.inertia_free.tangential_share;
+  std::size_t k = 0;
+  visit_contacts({ahead_, s.contacts, cell_ahead_, *table_, setup.contact, walls_ahead_, pores_}, 0,
+                 [&](const ContactView& view, const auto& law, const NeckHistory* neck) {
+                   NormalInput in = view.input;
+                   in.time = s.time;
+                   Linearisation l;
+                   if constexpr (has_necks<std::decay_t<decltype(law)>>)
+                     l = law.linearise(in, *neck);
+                   else
+                     l = law.linearise(in);
+                   NetworkLink& link = links[k++];
+                   const double across = link.lateral - lateral_share * link.coefficient;  // as a string
+                   link.coefficient = frozen_step(l, whole).coefficient;
+                   link.lateral = lateral_share * link.coefficient + across * whole / last;
+                 });
+  network_.clear();
+  for (const NetworkLink& link : links) network_.add(link);
+  network_.resist(last / whole * inertia_);
+}
+
+CellTangent InertiaFree::tangent(const State& s, const Setup& setup, double whole) {
+  if (whole > s.last_step) respond_over(s, setup, whole, s.last_step);
+  return cell_tangent(network_, forces_, cell_ahead_.volume());
+}
+
 std::size_t InertiaFree::bytes() const {
-  return network_.links().capacity() * sizeof(NetworkLink) + ahead_.body.capacity() * sizeof(Body) +
-         ahead_.material.capacity() + walls_ahead_.contacts().capacity() * sizeof(walls_ahead_.contacts()[0]) +
+  return forces_.capacity() * sizeof(LinkForce) + network_.links().capacity() * sizeof(NetworkLink) +
+         ahead_.body.capacity() * sizeof(Body) + ahead_.material.capacity() +
+         walls_ahead_.contacts().capacity() * sizeof(walls_ahead_.contacts()[0]) +
          std::size_t(velocity_.size() + resultant_.size() + change_.size() + external_.size() + before_.size() +
                      inertia_.size()) *
              sizeof(double);

@@ -49,27 +49,41 @@ class InertiaFree {
   /// v_before| of the contacts below step_tolerance x mean radius, which estimates backward Euler's error; a mean,
   /// because a contact that snaps moves at once however short the step is. Throws RunError when no step balances the
   /// forces.
+  /// A `stretch` gives the rate of the cell and ends the step at the latest.
   double move(State&, const Setup&, const PairTable&, const PoreClosure&, std::optional<std::size_t> guided,
-              double longest);
+              double longest, const CellStretch* stretch);
 
+  /// What the cell of a stretch answered in the step just moved.
+  CellAnswer answer() const {
+    return cell_answer(network_, forces_, cell_.gradient(), velocity_, cell_ahead_.volume());
+  }
+  /// How that changes with the rate of all the steps that ended with it, `whole` in all [s].  Once a step.
+  CellTangent tangent(const State&, const Setup&, double whole);
+  /// Of the particles against the cell in the last step [m/s].
+  const Eigen::VectorXd& velocity() const { return velocity_; }
+  /// Estimate of the last step's error: approach of a contact over the mean radius.
+  double error() const { return error_; }
   const InertiaFreeCount& count() const { return count_; }
   std::size_t bytes() const;
 
  private:
   struct Trial;
 
-  Trial prepare(const State&, const Setup&, const PairTable&, std::optional<std::size_t> guided, double step);
+  Trial prepare(const State&, const Setup&, const PairTable&, std::optional<std::size_t> guided, double step,
+                const CellStretch*);
   void look_ahead(const State&, const Trial&);
   /// `young`: share of a young neck's least resistance, falls from iterate to iterate.
   void respond(const State&, const Setup&, const Trial&, double young);
   bool balance(const State&, const Setup&, const Trial&);
   double error_estimate(const State&, const Trial&) const;
+  void respond_over(const State&, const Setup&, double whole, double last);
   void apply(State&, const Trial&) const;
 
   NetworkOperator network_{0, std::nullopt};
   Particles ahead_;  // at the end of the step: bodies and materials
   Cell cell_ahead_;
   CellStep cell_;
+  std::vector<LinkForce> forces_;  // of the links, at the end of the step
   Walls walls_ahead_;
   std::optional<PairTable> table_;  // at the end of the step
   PoreClosure pores_;               // at its end
@@ -78,7 +92,8 @@ class InertiaFree {
   Eigen::VectorXd inertia_;         // M/h of every row [N s/m]
   Eigen::VectorXd velocity_, before_, resultant_, change_;
   double force_scale_ = 0;  // norm of all contact forces [N]
-  int crawling_ = 0;        // steps in a row that lead nowhere
+  double error_ = 0;
+  int crawling_ = 0;  // steps in a row that lead nowhere
   InertiaFreeCount count_;
 };
 
