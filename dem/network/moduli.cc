@@ -39,13 +39,14 @@ std::vector<EdgeLaw> viscous_laws(const SpecimenNetwork& s, const ModuliSettings
     throw InputError("no contact flows at " + std::to_string(s.time) + " s, so that there is no viscosity");
   v.flowing = flowing.size();
   std::nth_element(flowing.begin(), flowing.begin() + std::ptrdiff_t(flowing.size() / 2), flowing.end());
-  const double stiffest = settings.rigid * flowing[flowing.size() / 2];
+  const double median = flowing[flowing.size() / 2], stiffest = settings.rigid * median;
   std::vector<EdgeLaw> laws;
   for (const NetworkEdge& e : s.network.edges) {
     const bool holds = flows(e) || e.neck_radius > 0 || e.overlap < 0;
     const double eta = holds ? std::min(e.law.viscosity > 0 ? e.law.viscosity : stiffest, stiffest) : 0.0;
-    v.rigid += eta == stiffest;
-    laws.push_back({eta, settings.tangential_viscosity * eta, e.law.active});
+    const bool rigid = eta == stiffest;
+    v.rigid += rigid;
+    laws.push_back({eta, settings.tangential_viscosity * (rigid ? median : eta), e.law.active});
   }
   return laws;
 }

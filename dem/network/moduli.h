@@ -11,12 +11,15 @@ namespace densify::dem {
 
 struct ModuliSettings {
   std::vector<NeckModel> models;
-  double tangential = unset;        ///< lateral over normal stiffness of contacts; unset: the model's own
-  double tangential_viscosity = 0;  ///< lateral over normal viscosity: a regularisation, the law has none
-  double rigid = 1e4;               ///< contacts that do not flow, over the median viscosity of those that do
-  double balance = 1e-6;            ///< of the balance of forces, see ProbeSettings
-  double soft_share = unset;        ///< count motions that resist less than this share of the stiffest; unset: do not
-  double tolerance = 1e-6;          ///< of symmetry, definiteness and Hill-Mandel
+  double tangential = unset;  ///< lateral over normal stiffness of contacts; unset: the model's own
+  /// Lateral over normal viscosity, which the law does not have: holds particles in line or in plane with the
+  /// neighbours that pull at them, where they are held in truth and the network at one moment cannot see it
+  /// (doc/moduli.md).
+  double tangential_viscosity = 1e-4;
+  double rigid = 1e4;         ///< contacts that do not flow, over the median viscosity of those that do
+  double balance = 1e-6;      ///< of the balance of forces, see ProbeSettings
+  double soft_share = unset;  ///< count motions that resist less than this share of the stiffest; unset: do not
+  double tolerance = 1e-6;    ///< of symmetry, definiteness and Hill-Mandel
   std::function<void(double)> watch = {};  ///< see ProbeSettings
 };
 

@@ -376,5 +376,35 @@ TEST(Moduli, RigidContacts) {
   EXPECT_LT(difference(viscous_answer(s, stiffer).viscosity.response.relaxed, v.viscosity.response.relaxed), 1e-4);
 }
 
+// A small particle between two images of a large one, off their line by an angle of 2e-4: the pull of its two contacts
+// holds it in line, so that they carry as two dashpots eta in series over the edge L, N_11 = eta/(2 L), and the
+// sintering force F as sigma_s,11 = F/L^2.  The network at that moment alone lets it escape sideways without
+// resistance; the tangential share t resists, leaving an error of the square of the angle over t, 4e-4.
+TEST(Moduli, ParticleHeldInLine) {
+  constexpr double edge = 1e-5, eta = 1e5, pull = 2e-5, angle = 2e-4;
+  SpecimenNetwork s;
+  s.cell.periodic = true;
+  s.cell.h = edge * Mat3::Identity();
+  s.volume = s.cell.volume();
+  s.network.particles = 2;
+  auto add = [&](std::uint32_t i, std::uint32_t j, const Vec3& branch, double active) {
+    const double d = branch.norm();
+    s.network.edges.push_back(
+        {i, j, false, s.network.edges.size(), branch / d, branch, -1e-7, 1e-6, d / 2, {1e5, 0, eta, active, 0}});
+  };
+  const double off = angle * edge / 2;
+  add(0, 1, {edge / 2, off, 0}, pull);
+  add(1, 0, {edge / 2, -off, 0}, pull);
+  add(0, 0, {0, edge, 0}, 0);
+  add(0, 0, {0, 0, edge}, 0);
+  const ViscousAnswer held = viscous_answer(s, settings);
+  EXPECT_NEAR(held.viscosity.response.relaxed(0, 0) / (eta / (2 * edge)), 1, 1e-3);
+  EXPECT_NEAR(held.sintering_stress[0] / (pull / (edge * edge)), 1, 1e-3);
+  EXPECT_NEAR(held.viscosity.response.relaxed(1, 1) / (eta / edge), 1, 1e-3);
+  ModuliSettings free = settings;
+  free.tangential_viscosity = 0;
+  EXPECT_LT(viscous_answer(s, free).viscosity.response.relaxed(0, 0), 1e-3 * eta / (2 * edge));
+}
+
 }  // namespace
 }  // namespace densify::dem
