@@ -47,13 +47,13 @@ def read(path):
 
 
 def around(result, density):
-    """Times [s] of the last snapshot below the density and of the one after it, and the temperature of the first [K]."""
+    """Times [s] of the last snapshot below the density and of the one after it."""
     with h5py.File(result, "r") as file:
-        moments = [tuple(s.attrs[name] for name in ("time", "relative_density", "temperature"))
+        moments = [(s.attrs["time"], s.attrs["relative_density"])
                    for _, s in sorted(file["snapshots"].items())]
-    for (t0, low, temperature), (t1, high, _) in zip(moments, moments[1:]):
+    for (t0, low), (t1, high) in zip(moments, moments[1:]):
         if low < density <= high:
-            return (t0, t1), temperature
+            return t0, t1
     sys.exit(f"{result}: relative density {density} is not among its snapshots")
 
 
@@ -66,22 +66,12 @@ def cell(options, particles, seed, out):
                *(word for s in settings for word in ("--set", s))])
     rows = []
     for density in options.density:
-        times, temperature = around(folder / "result.h5", density)
-        elastic = particles >= options.elastic_from
-        run([options.program, *(["compare-moduli", "--no-voxels", "--temperature", f"{temperature} K"] if elastic else ["moduli"]),
-             folder, "--quiet", "--model", "bonded_neck", "--out", folder / "at",
+        times = around(folder / "result.h5", density)
+        run([options.program, "moduli", folder, "--quiet", "--model", "bonded_neck", "--out", folder / "at",
              *(word for t in times for word in ("--at-time", f"{t:.17g} s"))])
-        if elastic:
-            tables = {"moduli": read(folder / "at" / "comparison.csv")}
-            for r in tables["moduli"]:
-                youngs, poisson = float(r["youngs_modulus_Pa"]), float(r["poissons_ratio"])
-                r["bulk_modulus_Pa"], r["shear_modulus_Pa"] = youngs / (3 - 6 * poisson), youngs / (2 + 2 * poisson)
-        else:
-            tables = {name: read(folder / "at" / f"{name}.csv") for name in ("moduli", "viscosities")}
+        tables = {name: read(folder / "at" / f"{name}.csv") for name in ("moduli", "viscosities")}
         row = {"particles": particles, "seed": seed, "density": density, "cpu_s": f"{cpu:.2f}"}
         for name, (table, column) in PROPERTIES.items():
-            if table not in tables:
-                continue
             low, high = ((float(r["relative_density"]), float(r[column])) for r in tables[table])
             share = (density - low[0]) / (high[0] - low[0])
             row[name] = f"{low[1] ** (1 - share) * high[1] ** share:.6g}"
@@ -137,9 +127,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scene")
     parser.add_argument("--out", required=True)
-    parser.add_argument("--sizes", nargs="+", default=["200:12", "600:8", "2000:6", "6000:3", "20000:2"])
-    parser.add_argument("--elastic-from", type=int, default=sys.maxsize, metavar="N",
-                        help="from this number of particles on elastic moduli alone: viscosities of many take long")
+    parser.add_argument("--sizes", nargs="+", default=["200:12", "600:8", "2000:6", "6000:4", "20000:3"])
     parser.add_argument("--density", nargs="+", type=float, default=[0.85, 0.95])
     parser.add_argument("--set", nargs="+", default=[], metavar="KEY=VALUE", help="settings of the scene")
     parser.add_argument("--program", default=ROOT / "densify")
