@@ -110,6 +110,44 @@ TEST(VoxelStiffness, SymmetricDefiniteAndWithinBounds) {
     }
 }
 
+/// Every voxel as 2^3.
+VoxelImage refined(const VoxelImage& coarse) {
+  VoxelImage fine{coarse.cell, coarse.n, {}};
+  for (int& n : fine.n) n *= 2;
+  fine.phase.resize(8 * coarse.phase.size());
+  for (int z = 0; z < fine.n[2]; ++z)
+    for (int y = 0; y < fine.n[1]; ++y)
+      for (int x = 0; x < fine.n[0]; ++x) fine.phase[fine.at(x, y, z)] = coarse.phase[coarse.at(x / 2, y / 2, z / 2)];
+  return fine;
+}
+
+// Two phases of one shear modulus G: whatever their arrangement the body is isotropic with that G and 1/(K + 4 G/3) =
+// sum f_i/(K_i + 4 G/3) (Hill, 1963), stairs or not.  Elements refined twice on the same stairs come to it from above,
+// each time by one factor, that of the edges' singularity, so that the limit of a geometric series is the answer.
+TEST(VoxelStiffness, CompositeOfOneShearModulus) {
+  const double shear = 1, bulk[] = {1, 3};
+  std::vector<ElasticSolid> solids;
+  for (const double k : bulk)
+    solids.push_back({9 * k * shear / (3 * k + shear), (3 * k - 2 * shear) / (2 * (3 * k + shear))});
+  VoxelImage image = boolean_spheres(BooleanModel::solid_spheres, 0.6, 5, 6, 3);
+  const double f = image.solid_fraction();
+  for (auto& phase : image.phase)
+    if (phase == 0) phase = 2;
+  const double due = 1 / (f / (bulk[0] + 4 * shear / 3) + (1 - f) / (bulk[1] + 4 * shear / 3)) - 4 * shear / 3;
+  std::array<double, 3> error{};
+  for (double& e : error) {
+    const auto p = isotropic_part(voxel_stiffness(image, solids, {}, MPI_COMM_WORLD).stiffness);
+    EXPECT_NEAR(p.shear, shear, 1e-6);
+    EXPECT_LT(p.distance, 1e-6);
+    e = p.bulk / due - 1;
+    image = refined(image);
+  }
+  const double first = error[0] - error[1], second = error[1] - error[2];
+  EXPECT_GT(second, 0);
+  EXPECT_GT(first / second, 2);
+  EXPECT_NEAR(error[2] - second * second / (first - second), 0, 2e-3) << error[0] << ' ' << error[1] << ' ' << error[2];
+}
+
 // A cell shifted by some voxels and doubled along an edge is the same material.
 TEST(VoxelStiffness, ShiftAndRepetition) {
   VoxelImage image = boolean_spheres(BooleanModel::solid_spheres, 0.7, 5, 10, 2);
