@@ -3,8 +3,9 @@
 
     plot_stresses.py DIR/stress_histograms.csv [-o FOLDER] [--history history.csv]
 
-Writes particle_stress, neck_stress (where there are necks) and, with a history, macroscopic_stress, each as .png and
-.svg.  One row a moment, at most six.  Bins hold all but the outermost values, whose numbers stand in the corners.
+Writes particle_stress, neck_stress (where there are necks), phase_stress (of several materials at three moments or more,
+from macroscopic_stress.csv beside the table) and, with a history, macroscopic_stress, each as .png and .svg.  Histograms have
+one row a moment, at most six; their bins hold all but the outermost values, whose numbers stand in the corners.
 Needs matplotlib.
 """
 
@@ -132,13 +133,46 @@ def draw_necks(moments, folder):
     save(figure, folder, "neck_stress")
 
 
+def three_directions(what):
+    """A panel each for xx, yy and zz over time."""
+    figure, axes = plt.subplots(1, 3, figsize=(11, 3.6), sharey=True, constrained_layout=True)
+    for panel, direction in zip(axes, ("xx", "yy", "zz")):
+        panel.axhline(0, color="0.7", linewidth=0.8)
+        panel.set_title(direction, fontsize=10)
+        panel.set_xlabel("time [min]")
+        panel.grid(alpha=0.3)
+    axes[0].set_ylabel(f"{what} [MPa]")
+    return figure, axes
+
+
+def draw_phases(path, folder):
+    """The mean stress in each material over time: its part of the specimen's stress over its share of the volume."""
+    phases = {}
+    if path.exists():
+        with open(path, encoding="utf-8", newline="") as file:
+            for row in csv.DictReader(file):
+                if row["by"] == "particles":
+                    phases.setdefault(row["of"], []).append(row)
+    if len(phases) < 2 or min(len(rows) for rows in phases.values()) < 3:
+        return
+    figure, axes = three_directions("mean stress in the phase")
+    for panel, direction in zip(axes, ("xx", "yy", "zz")):
+        for name, rows in phases.items():
+            rows = sorted(rows, key=lambda row: float(row["time_s"]))
+            panel.plot([float(row["time_s"]) / 60 for row in rows],
+                       [MEGA * float(row[f"total_{direction}_Pa"]) / float(row["volume_share"]) for row in rows],
+                       linewidth=1.2, marker=".", markersize=3, label=name)
+    axes[0].legend(frameon=False, fontsize=8)
+    save(figure, folder, "phase_stress")
+
+
 def draw_course(path, folder):
     with open(path, encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     if not rows or "sintering_stress_xx_Pa" not in rows[0]:
         return
     minutes = [float(row["time_s"]) / 60 for row in rows]
-    figure, axes = plt.subplots(1, 3, figsize=(11, 3.6), sharey=True, constrained_layout=True)
+    figure, axes = three_directions("macroscopic stress")
     columns = {"sintering": "sintering_stress_", "viscoelastic": "viscoelastic_stress_", "total": "stress_"}
     for panel, direction in zip(axes, ("xx", "yy", "zz")):
         for stress, column in columns.items():
@@ -146,11 +180,6 @@ def draw_course(path, folder):
             panel.plot(minutes, values, color=COLOURS[stress], linewidth=1.2,
                        linestyle="--" if stress == "total" else "-",
                        label={"sintering": "sintering driving"}.get(stress, stress))
-        panel.axhline(0, color="0.7", linewidth=0.8)
-        panel.set_title(direction, fontsize=10)
-        panel.set_xlabel("time [min]")
-        panel.grid(alpha=0.3)
-    axes[0].set_ylabel("macroscopic stress [MPa]")
     axes[0].legend(frameon=False, fontsize=8)
     save(figure, folder, "macroscopic_stress")
 
@@ -165,6 +194,7 @@ def main():
     moments = read_histograms(options.table)
     draw_particles(moments, folder)
     draw_necks(moments, folder)
+    draw_phases(pathlib.Path(options.table).parent / "macroscopic_stress.csv", folder)
     if options.history:
         draw_course(options.history, folder)
 
