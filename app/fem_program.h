@@ -8,6 +8,7 @@ namespace densify::app {
 
 inline constexpr const char* voxel_program = "densify-voxel-moduli";
 inline constexpr const char* press_program = "densify-press";
+inline constexpr const char* tabulate_program = "densify-tabulate";
 
 /// Throws InputError when a program was not built: "`who` needs deal.II ...", and `otherwise`.
 void require_program(const std::string& program, const std::string& who, const std::string& otherwise);

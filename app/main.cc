@@ -24,6 +24,8 @@ namespace {
 int run_main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "voxel-moduli")
     densify::app::become_program(densify::app::voxel_program, "voxel-moduli", {argv + 2, argv + argc});
+  if (argc > 1 && std::string_view(argv[1]) == "tabulate")
+    densify::app::become_program(densify::app::tabulate_program, "tabulate", {argv + 2, argv + argc});
   CLI::App app{"Densify: how a powder becomes a solid part under heat and pressure."};
   app.name("densify");
   app.footer(densify::app::exit_codes);
@@ -109,6 +111,7 @@ int run_main(int argc, char** argv) {
       "stresses", "Stress in necks, particles and the specimen at moments of a result: tables and histograms");
   densify::app::add_choice(*stresses_command, stresses);
 
+  app.add_subcommand("tabulate", "Response table of a volume element, for a pressing; its own --help");
   app.add_subcommand("voxel-moduli", "Elastic moduli by finite elements on voxels (deal.II, PETSc); its own --help");
 
   densify::app::CompareCommand compare;

@@ -11,7 +11,7 @@ install(TARGETS densify_flags densify_base densify_dem EXPORT DensifyTargets INC
 install(EXPORT DensifyTargets NAMESPACE densify:: DESTINATION ${package_dir})
 install(TARGETS densify)
 if(DENSIFY_FEM)
-  install(TARGETS densify-press densify-voxel-moduli)
+  install(TARGETS densify-press densify-tabulate densify-voxel-moduli)
 endif()
 install(DIRECTORY base dem DESTINATION ${include_dir} FILES_MATCHING PATTERN *.h)
 install(DIRECTORY dem/material/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/densify/materials OPTIONAL

@@ -76,6 +76,23 @@ void read_table(Section& table, PressScene& scene) {
   scene.clamp = beyond == Beyond::clamp;
 }
 
+void read_tabulate(Section& tabulate, TableSettings& s) {
+  const Range density = Range::inside(0.5, 1);
+  tabulate.quantity_list("pressure_factors", s.pressure_factors, dim::none, Range::positive(), Need::optional,
+                         "of the process's pressures, growing: a branch of the table each");
+  tabulate.integer("elements", s.elements, 1, 1000, Need::optional,
+                   "that are averaged: seeds of the packing counted up");
+  tabulate.quantity("end_density", s.end_density, dim::none, density, Need::optional,
+                    "relative, where the table ends; below 1, where viscosities are infinite");
+  tabulate.quantity("longest_hold", s.longest_hold, dim::time, Range::positive(), Need::optional,
+                    "the stay at the highest temperature is prolonged by up to this for it");
+  if (tabulate.documenting()) return;
+  if (s.pressure_factors.empty()) tabulate.fail("pressure_factors", "needs at least one number");
+  for (std::size_t k = 1; k < s.pressure_factors.size(); ++k)
+    if (!(s.pressure_factors[k] > s.pressure_factors[k - 1]))
+      tabulate.fail("pressure_factors", "the numbers do not grow; sort them");
+}
+
 void visit(Section root, PressScene& scene) {
   root.text("title", scene.title, Need::optional, "a line for results and reports");
   std::optional<Section> process_place;
@@ -106,6 +123,8 @@ void visit(Section root, PressScene& scene) {
   root.section("rve", scene.coupling == Coupling::live ? Need::required : Need::optional,
                "the volume element, with the tables of a scene of particles",
                [&](Section& element) { scene.element = dem::read_element(element, *process_place, *scene.schedule); });
+  root.section("tabulate", Need::optional, "how densify tabulate makes a table of the volume element",
+               [&](Section& tabulate) { read_tabulate(tabulate, scene.table_settings); });
   root.section("output", Need::defaulted, "what is written", [&](Section& output) {
     output.quantity("field_interval", scene.field_interval, dim::time, Range::non_negative(), Need::optional,
                     "of the process, between fields for ParaView; 0: only at the ends of stages");

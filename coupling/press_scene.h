@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/schedule.h"
+#include "coupling/tabulate.h"
 #include "dem/io/scene.h"
 #include "fem/press/porous_law.h"
 #include "fem/press/press_run.h"
@@ -35,6 +36,7 @@ struct PressScene {
   Coupling coupling = Coupling::closed_form;
   fem::SkorohodOlevsky::Parameters material{};
   std::filesystem::path table;        ///< of responses
+  TableSettings table_settings;       ///< for densify tabulate
   bool clamp = false;                 ///< beyond the ends of the table its last values stand
   std::optional<dem::Scene> element;  ///< the volume element, where the scene has one
   double field_interval = 0;          ///< of the process [s]; 0: only ends of stages

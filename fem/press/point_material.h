@@ -2,6 +2,7 @@
 // What the finite elements ask of a material: stress at the end of a step for a strain over it, at many points at once.
 
 #include <span>
+#include <string>
 
 #include "base/tensor.h"
 
@@ -47,6 +48,9 @@ class PointMaterial {
   /// `before`, so that a step can be tried again.  Throws StepRefused when a point cannot take the step.
   virtual void update(std::span<const PointStep> steps, std::span<const double> before, std::span<double> after,
                       std::span<PointAnswer> answers) const = 0;
+
+  /// Why the material does not hold for the state of a point at a temperature [K], a sentence; empty where it does.
+  virtual std::string outside(std::span<const double> /*state*/, double /*temperature*/) const { return {}; }
 };
 
 }  // namespace densify::fem

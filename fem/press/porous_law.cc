@@ -19,12 +19,12 @@ Mat6 isotropic_inverse(double bulk_inverse, double shear_inverse) {
   return s;
 }
 
-PorousResponse SkorohodOlevsky::response(double density, double temperature) const {
+PorousResponse SkorohodOlevsky::response(const PorousState& s) const {
   constexpr double gas_constant = 8.31446261815324;
-  const double rho = std::clamp(density, 0.01, 1.0);  // beyond it is a Newton iteration on its way
+  const double rho = std::clamp(s.density, 0.01, 1.0);  // beyond it is a Newton iteration on its way
   const double theta = 1 - rho;
-  const double eta =
-      p_.viscosity * std::exp(p_.activation_enthalpy / gas_constant * (1 / temperature - 1 / p_.reference_temperature));
+  const double eta = p_.viscosity * std::exp(p_.activation_enthalpy / gas_constant *
+                                             (1 / s.temperature - 1 / p_.reference_temperature));
   const double share = rho * rho;
   PorousResponse r;
   r.stiffness = isotropic_tensor(share * p_.youngs_modulus / (3 * (1 - 2 * p_.poissons_ratio)),

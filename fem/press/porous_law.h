@@ -1,23 +1,39 @@
 #pragma once
 // What a sintering porous solid is at a density and temperature, in closed form or from a table.
 
+#include <string>
+
 #include "base/tensor.h"
 
 namespace densify::fem {
 
-/// Strain rate = elastic + thermal + fluidity (stress - sintering stress).
+/// Strain rate = elastic + thermal + fluidity (stress - sintering stress) + what keeps stress : yield : stress <= 1.
 struct PorousResponse {
-  Mat6 stiffness;         ///< elastic [Pa]
-  Mat6 fluidity;          ///< inverse of the viscosity, strain rates as engineering shears [1/(Pa s)]
-  Vec6 sintering_stress;  ///< stress at no inelastic rate: positive where the free body shrinks [Pa]
+  Mat6 stiffness;             ///< elastic [Pa]
+  Mat6 fluidity;              ///< inverse of the viscosity, strain rates as engineering shears [1/(Pa s)]
+  Vec6 sintering_stress;      ///< stress at no inelastic rate: positive where the free body shrinks [Pa]
+  Mat6 yield = Mat6::Zero();  ///< of grains that slide past each other: zero where they do not [1/Pa^2]
+};
+
+/// What a porous solid is a function of.
+struct PorousState {
+  double density;      ///< relative, without elastic and thermal strain
+  double temperature;  ///< [K]
+  double birth;        ///< density at which necks began to grow; 0 while there are none
 };
 
 class PorousLaw {
  public:
   virtual ~PorousLaw() = default;
 
-  /// `density` relative, `temperature` [K].  Defined above full density too, where a Newton iteration may look.
-  virtual PorousResponse response(double density, double temperature) const = 0;
+  /// Defined above full density too, where a Newton iteration may look.
+  virtual PorousResponse response(const PorousState&) const = 0;
+
+  /// Necks begin to grow where the temperature first reaches this [K].
+  virtual double activation_temperature() const { return 0; }
+
+  /// Why the law does not hold for a state, a sentence; empty where it does.
+  virtual std::string outside(const PorousState&) const { return {}; }
 
   /// Thermal strain from a reference temperature, that of the dense solid [1].
   virtual double thermal_strain(double temperature) const = 0;
@@ -48,7 +64,7 @@ class SkorohodOlevsky : public PorousLaw {
   /// Elastic moduli of the porous solid are those of the dense one times (1 - theta)^2, where nothing else is known.
   explicit SkorohodOlevsky(const Parameters& p) : p_(p) {}
 
-  PorousResponse response(double density, double temperature) const override;
+  PorousResponse response(const PorousState&) const override;
   double thermal_strain(double temperature) const override;
 
  private:

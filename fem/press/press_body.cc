@@ -8,6 +8,7 @@
 
 #include <numeric>
 
+#include "base/check.h"
 #include "fem/press/axes.h"
 #include "fem/press/step_refused.h"
 
@@ -146,9 +147,21 @@ PressOutcome PressBody<dim>::try_step(const PressLoad& load) {
   PressOutcome outcome;
   for (outcome.rounds = 1;; ++outcome.rounds) {
     balance(load, constraints, outcome);
-    if (revise_contact() == 0) return outcome;
+    if (revise_contact() == 0) break;
     if (outcome.rounds == most_rounds) throw StepRefused("which points touch the wall is not settled");
   }
+  require_inside();
+  return outcome;
+}
+
+template <int dim>
+void PressBody<dim>::require_inside() const {
+  const std::size_t n = material_->state_size();
+  std::string found;
+  for (std::size_t k = 0; k < weight_.size() && found.empty(); ++k)
+    found = material_->outside(std::span(tried_state_).subspan(n * k, n), tried_temperature_);
+  if (sum(found.empty() ? 0 : 1, comm_) > 0)
+    throw RunError(found.empty() ? "a point of another rank leaves what the material holds for" : found);
 }
 
 template <int dim>

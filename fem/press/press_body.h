@@ -85,7 +85,8 @@ class PressBody {
   PressBody(const CylinderSize&, std::shared_ptr<const PointMaterial>, double density, double temperature,
             const PressSettings&, MPI_Comm);
 
-  /// Tries a step from the accepted state.  Throws StepRefused when no solution is found.
+  /// Tries a step from the accepted state.  Throws StepRefused when no solution is found, RunError where the solution
+  /// leaves what the material holds for.
   PressOutcome try_step(const PressLoad&);
 
   /// Makes the step that was tried last the accepted state.
@@ -132,6 +133,7 @@ class PressBody {
   /// Stiffness of the slip that friction holds: a hundredth of the largest slip of the step takes it up.
   /// Chosen anew, or only made softer; whether it changed.
   bool choose_shear(const PressOutcome&, bool anew);
+  void require_inside() const;
   double deepest() const;  ///< of the closed points inside the wall, on all ranks [m]
   /// Opens points that the wall pulls, closes those that are inside it; how many, on all ranks.
   int revise_contact();

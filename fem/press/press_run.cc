@@ -13,6 +13,7 @@ namespace {
 
 constexpr double first_share = 0.01;         // of a stage, its first step
 constexpr double largest_share = 0.1;        // of a stage, any step
+constexpr double least_share = 1e-3;         // of a stage: no error asks for a shorter step
 constexpr double densification_scale = 0.5;  // over which the accuracy is spread
 constexpr double idle_share = 0.02;          // of it, for the time that passes
 constexpr double ejection_steps = 40;
@@ -130,7 +131,7 @@ const PressRow& PressRun<dim>::advance() {
     row_.iterations += outcome.iterations;
     const double order = step_before_ > 0 ? 3 : 2;
     const double factor = error > 0 ? 0.85 * std::pow(allowed / error, 1 / order) : 2;
-    if (error > allowed && step > 1e-3 * length) {
+    if (error > allowed && step > least_share * length) {
       ++row_.rejected;
       next_ = step * std::clamp(factor, 0.2, 0.8);
       continue;
@@ -156,6 +157,7 @@ const PressRow& PressRun<dim>::advance() {
     row_.step = step;
     ++row_.steps;
     next_ = std::max(next_, step) * std::clamp(factor, 0.3, 1.6);
+    if (factor < 1) next_ = std::max(next_, least_share * length);
     if (time >= stage_end) {  // what comes may be another law: begin anew
       step_ = step_before_ = 0;
       next_ = 0;

@@ -10,8 +10,11 @@ namespace densify::fem {
 namespace {
 
 constexpr int most_iterations = 30;
-constexpr double tolerance = 1e-13;         // of the inelastic strain
-constexpr double density_increment = 1e-6;  // for derivatives of the law by the density
+constexpr double sliding = 100;              // strain for a stress that is twice what yields
+constexpr int most_parts = 64;               // of the strain of a step
+constexpr double tolerance = 1e-13;          // of the inelastic strain
+constexpr double sliding_tolerance = 1e-11;  // `sliding` times what rounding leaves of a stress
+constexpr double density_increment = 1e-6;   // for derivatives of the law by the density
 
 /// The middle of a step: of the porosity, in its logarithm, which never lets a pore close in a step.
 double middle_density(double before, double after) {
@@ -23,83 +26,187 @@ double middle_slope(double before, double after) {
   return before < 1 && after < 1 ? 0.5 * std::sqrt((1 - before) / (1 - after)) * after : 0;
 }
 
-/// The law at the middle of the step, how it changes with the density there, and the stiffness at the end.
-struct LawOverStep {
-  PorousResponse middle, slope;
-  Mat6 stiffness, stiffness_slope;
+PorousResponse slope_of(const PorousLaw& law, PorousState s, const PorousResponse& here) {
+  s.density -= density_increment;
+  const PorousResponse below = law.response(s);
+  return {(here.stiffness - below.stiffness) / density_increment, (here.fluidity - below.fluidity) / density_increment,
+          (here.sintering_stress - below.sintering_stress) / density_increment,
+          (here.yield - below.yield) / density_increment};
+}
 
-  LawOverStep(const PorousLaw& law, double density_before, double density, const PointStep& step) {
-    const double density_middle = middle_density(density_before, density);
-    const double temperature = 0.5 * (step.temperature_before + step.temperature);
-    middle = law.response(density_middle, temperature);
-    const PorousResponse below = law.response(density_middle - density_increment, temperature);
-    slope.fluidity = (middle.fluidity - below.fluidity) / density_increment;
-    slope.sintering_stress = (middle.sintering_stress - below.sintering_stress) / density_increment;
-    stiffness = law.response(density, step.temperature).stiffness;
-    stiffness_slope =
-        (stiffness - law.response(density - density_increment, step.temperature).stiffness) / density_increment;
+/// The law at the middle of the step and at its end, and how it changes with the density there.
+struct LawOverStep {
+  PorousResponse middle, middle_slope, end, end_slope;
+
+  LawOverStep(const PorousLaw& law, double density_before, double density, double birth, const PointStep& step) {
+    const PorousState half{middle_density(density_before, density), 0.5 * (step.temperature_before + step.temperature),
+                           birth};
+    middle = law.response(half);
+    middle_slope = slope_of(law, half, middle);
+    const PorousState whole{density, step.temperature, birth};
+    end = law.response(whole);
+    end_slope = slope_of(law, whole, end);
   }
 };
 
-void one_point(const PorousLaw& law, const PointStep& step, std::span<const double> before, std::span<double> after,
-               PointAnswer& answer) {
-  const Eigen::Map<const Vec6> elastic_before(before.data());
-  const double density_before = before[6];
-  const double thermal = law.thermal_strain(step.temperature) - law.thermal_strain(step.temperature_before);
-  Vec6 trial = elastic_before + step.strain;
-  trial.head<3>().array() -= thermal;
+/// q = sqrt(stress : yield : stress), and the direction m = Y0 dq/dstress in which grains slide, Y0 the axial stress
+/// that yields alone.
+struct Sliding {
+  double q = 0;
+  Vec6 direction = Vec6::Zero(), q_by_stress = Vec6::Zero();
+  Mat6 by_stress = Mat6::Zero();  // of the direction
+  Vec6 by_density = Vec6::Zero();
+  double q_by_density = 0;
 
-  Vec6 inelastic = Vec6::Zero();
-  bool solved = false;
-  // r(x) = x - dt M(rho_m) (C(rho) (trial - x) - sigma_s(rho_m)), rho = rho_0 exp(-tr x),
-  // 1 - rho_m = sqrt((1 - rho_0) (1 - rho))
-  for (int k = 0; k < most_iterations; ++k) {
-    const double density = density_before * std::exp(-inelastic.head<3>().sum());
-    const LawOverStep at(law, density_before, density, step);
-    const Vec6 elastic = trial - inelastic;
-    const Vec6 stress = at.stiffness * elastic;
-    const Mat6 flow = step.step * at.middle.fluidity;
-    const Vec6 drive = stress - at.middle.sintering_stress;
-    const Vec6 stiffening = at.stiffness_slope * elastic;
-    const Vec6 by_middle = step.step * (at.slope.fluidity * drive) - flow * at.slope.sintering_stress;
-    Mat6 jacobian = Mat6::Identity() + flow * at.stiffness;
-    jacobian.leftCols<3>().colwise() +=
-        middle_slope(density_before, density) * by_middle + density * (flow * stiffening);
-    if (solved) {  // one more look, for the tangent at the solution
-      const Mat6 moved = jacobian.partialPivLu().solve(flow * at.stiffness);
-      answer.tangent = at.stiffness * (Mat6::Identity() - moved);
-      answer.tangent -= density * stiffening * moved.topRows<3>().colwise().sum();
-      answer.stress = stress;
-      answer.density = density;
-      answer.stored = 0.5 * stress.dot(elastic);
-      answer.dissipated = stress.dot(inelastic);
-      answer.thermal = stress.head<3>().sum() * thermal;
-      Eigen::Map<Vec6>(after.data()) = elastic;
-      after[6] = density;
-      return;
+  Sliding(const PorousResponse& at, const PorousResponse& slope, const Vec6& stress) {
+    const Vec6 y = at.yield * stress, changed = slope.yield * stress;
+    q = std::sqrt(stress.dot(y));
+    if (!(q > 0)) return;
+    const double alone = 1 / std::sqrt(at.yield(2, 2));
+    q_by_stress = y / q;
+    q_by_density = stress.dot(changed) / (2 * q);
+    direction = alone * q_by_stress;
+    by_stress = alone / q * (at.yield - q_by_stress * q_by_stress.transpose());
+    by_density =
+        alone / q * (changed - q_by_density * q_by_stress) - 0.5 * slope.yield(2, 2) / at.yield(2, 2) * direction;
+  }
+};
+
+/// The density at which necks begin, for a step that may pass the temperature of their activation.
+double birth_in(const PorousLaw& law, std::span<const double> before, const PointStep& step) {
+  const bool active = 0.5 * (step.temperature_before + step.temperature) >= law.activation_temperature();
+  return before[7] == 0 && active ? before[6] : before[7];
+}
+
+using Vec7 = Eigen::Matrix<double, 7, 1>;
+using Mat7 = Eigen::Matrix<double, 7, 7>;
+
+/// One step of one point: Newton's method for the inelastic strain x and the length m of what grains slide,
+///   x = dt M(rho_m) (sigma - sigma_s(rho_m)) + m direction(sigma, rho), sigma = C(rho) (trial - x),
+///   q(sigma, rho) - 1 = m/sliding where they slide, m = 0 where not,
+/// rho = rho_0 exp(-tr x), 1 - rho_m = sqrt((1 - rho_0) (1 - rho)).
+class PointUpdate {
+ public:
+  PointUpdate(const PorousLaw& law, const PointStep& step, std::span<const double> before)
+      : law_(law), step_(step), density_before_(before[6]), birth_(birth_in(law, before, step)), start_(before.data()) {
+    thermal_ = law.thermal_strain(step.temperature) - law.thermal_strain(step.temperature_before);
+  }
+
+  void solve(std::span<double> after, PointAnswer& answer) {
+    // Grains that are to slide far may need a guess from a part of the strain.
+    int parts = 1;
+    while (!follow(parts)) {
+      parts *= 8;
+      if (!slides_ || parts > most_parts)
+        throw StepRefused("the inelastic strain of a point is not found in " + std::to_string(most_iterations) +
+                          " iterations");
     }
-    Vec6 change = jacobian.partialPivLu().solve(inelastic - flow * drive);
+    answer = answer_;
+    Eigen::Map<Vec6>(after.data()) = trial_ - x_.head<6>();
+    after[6] = answer.density;
+    after[7] = birth_;
+  }
+
+ private:
+  /// Whether the solution was found with the strain in so many parts, each beginning where the one before ended.
+  bool follow(int parts) {
+    x_.setZero();
+    slides_ = false;
+    Vec6 strain = step_.strain;
+    strain.head<3>().array() -= thermal_;
+    for (int k = 1; k <= parts; ++k) {
+      trial_ = start_ + double(k) / parts * strain;
+      const Vec7 guess = x_;
+      x_[6] = 0;
+      if (!iterate(false)) return false;
+      if (!(q_ > 1)) continue;
+      slides_ = true;
+      if (guess[6] > 0) x_ = guess;
+      if (!iterate(true)) return false;
+    }
+    return true;
+  }
+  bool iterate(bool slides);
+
+  const PorousLaw& law_;
+  const PointStep& step_;
+  const double density_before_, birth_;
+  const Eigen::Map<const Vec6> start_;  // elastic strain before
+  double thermal_, q_ = 0;
+  bool slides_ = false;
+  Vec6 trial_;
+  Vec7 x_ = Vec7::Zero();
+  PointAnswer answer_{};
+};
+
+bool PointUpdate::iterate(bool slides) {
+  bool solved = false;
+  for (int k = 0; k < most_iterations; ++k) {
+    const Vec6 inelastic = x_.head<6>();
+    const double density = density_before_ * std::exp(-inelastic.head<3>().sum());
+    const LawOverStep at(law_, density_before_, density, birth_, step_);
+    const Vec6 elastic = trial_ - inelastic;
+    const Vec6 stress = at.end.stiffness * elastic;
+    const Vec6 stiffening = at.end_slope.stiffness * elastic;
+    const Mat6 flow = step_.step * at.middle.fluidity;
+    const Vec6 drive = stress - at.middle.sintering_stress;
+    const Sliding slide(at.end, at.end_slope, stress);
+    q_ = slide.q;
+    // By stress and by density, of the right side of x.
+    const Mat6 by_stress = flow + x_[6] * slide.by_stress;
+    const Vec6 by_middle = step_.step * (at.middle_slope.fluidity * drive) - flow * at.middle_slope.sintering_stress;
+    const Vec6 by_density = by_stress * stiffening + x_[6] * slide.by_density;
+    Mat7 jacobian = Mat7::Identity();
+    Vec7 residual = x_;
+    Eigen::Matrix<double, 7, 6> by_trial;
+    residual.head<6>() -= flow * drive + x_[6] * slide.direction;
+    jacobian.topLeftCorner<6, 6>() += by_stress * at.end.stiffness;
+    jacobian.topLeftCorner<6, 3>().colwise() +=
+        middle_slope(density_before_, density) * by_middle + density * by_density;
+    by_trial.topRows<6>() = by_stress * at.end.stiffness;
+    by_trial.row(6).setZero();
+    if (slides) {
+      jacobian.topRightCorner<6, 1>() -= slide.direction;
+      const Vec6 q_by_strain = at.end.stiffness * slide.q_by_stress;
+      residual[6] = x_[6] / sliding - (slide.q - 1);
+      jacobian(6, 6) = 1 / sliding;
+      jacobian.bottomLeftCorner<1, 6>() = q_by_strain.transpose();
+      jacobian.bottomLeftCorner<1, 3>().array() += density * (slide.q_by_density + slide.q_by_stress.dot(stiffening));
+      by_trial.row(6) = q_by_strain.transpose();
+    }
+    const Eigen::PartialPivLU<Mat7> lu(jacobian);
+    if (solved) {  // one more look, for the tangent at the solution
+      const Mat6 moved = lu.solve(by_trial).topRows<6>();
+      answer_.tangent = at.end.stiffness * (Mat6::Identity() - moved);
+      answer_.tangent -= density * stiffening * moved.topRows<3>().colwise().sum();
+      answer_.stress = stress;
+      answer_.density = density;
+      answer_.stored = 0.5 * stress.dot(elastic);
+      answer_.dissipated = stress.dot(inelastic);
+      answer_.thermal = stress.head<3>().sum() * thermal_;
+      return true;
+    }
+    Vec7 change = lu.solve(residual);
     const double volume = std::abs(change.head<3>().sum());
     if (!std::isfinite(change.sum())) break;
     if (volume > 0.1) change *= 0.1 / volume;  // a density within reach of the slope
     // No further towards full density than to a quarter of the porosity.
     const double closing = -change.head<3>().sum(), all = -inelastic.head<3>().sum();
     if (density < 1 && -closing > 0) {
-      const double most = std::log((1 - 0.25 * (1 - density)) / density_before) - all;
+      const double most = std::log((1 - 0.25 * (1 - density)) / density_before_) - all;
       if (-closing > most) change *= most / -closing;
     }
-    inelastic -= change;
-    solved = volume <= 0.1 && change.norm() <= tolerance + 1e-12 * inelastic.norm();
+    x_ -= change;
+    solved = volume <= 0.1 && change.norm() <= (slides ? sliding_tolerance : tolerance) + 1e-12 * x_.norm();
   }
-  throw StepRefused("the inelastic strain of a point is not found in " + std::to_string(most_iterations) +
-                    " iterations");
+  return false;
 }
 
 }  // namespace
 
 void ViscousSolid::begin(double density, std::span<double> state) const {
   std::fill(state.begin(), state.end(), 0.0);
-  state[6] = density;
+  state[6] = density;  // no necks: state[7] is 0
 }
 
 double ViscousSolid::solid_volume(std::span<const double> state, double temperature_at_start,
@@ -111,7 +218,11 @@ double ViscousSolid::solid_volume(std::span<const double> state, double temperat
 void ViscousSolid::update(std::span<const PointStep> steps, std::span<const double> before, std::span<double> after,
                           std::span<PointAnswer> answers) const {
   for (std::size_t k = 0; k < steps.size(); ++k)
-    one_point(*law_, steps[k], before.subspan(7 * k, 7), after.subspan(7 * k, 7), answers[k]);
+    PointUpdate(*law_, steps[k], before.subspan(8 * k, 8)).solve(after.subspan(8 * k, 8), answers[k]);
+}
+
+std::string ViscousSolid::outside(std::span<const double> state, double temperature) const {
+  return law_->outside({state[6], temperature, state[7]});
 }
 
 }  // namespace densify::fem

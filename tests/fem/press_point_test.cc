@@ -25,7 +25,7 @@ SkorohodOlevsky::Parameters solid() {
 /// One point through steps of which the components of strain not given follow from their stress.
 struct Point {
   ViscousSolid material;
-  std::vector<double> state = std::vector<double>(7);
+  std::vector<double> state = std::vector<double>(8);
   PointAnswer answer{};
 
   explicit Point(const SkorohodOlevsky::Parameters& p, double density)
@@ -43,7 +43,7 @@ struct Point {
   /// A step in which component k has stress[k] where driven[k], and no strain elsewhere.
   void step(double duration, const Vec6& stress, const Eigen::Array<bool, 6, 1>& driven) {
     Vec6 strain = Vec6::Zero();
-    std::vector<double> after(7);
+    std::vector<double> after(8);
     for (int iteration = 0; iteration < 30; ++iteration) {
       answer = trial(strain, duration, after);
       Mat6 k = answer.tangent;
@@ -118,7 +118,7 @@ TEST(SinteringSolid, ALongStepDoesNotPassFullDensity) {
   Point point(p, 0.99);
   Vec6 strain = Vec6::Zero();
   strain.head<3>().setConstant(-0.02 / 3);
-  std::vector<double> after(7);
+  std::vector<double> after(8);
   const PointAnswer a = point.trial(strain, 1e4, after);
   EXPECT_LT(a.density, 1);
   EXPECT_GT(a.density, 1 - 1e-5);
@@ -135,7 +135,7 @@ TEST(SinteringSolid, TangentIsTheDifferenceQuotient) {
   std::uniform_real_distribution<double> strain(-0.02, 0.02);
   Vec6 first, second;
   for (int k = 0; k < 6; ++k) first[k] = strain(random), second[k] = strain(random);
-  std::vector<double> after(7);
+  std::vector<double> after(8);
   point.trial(first, 5, after);
   point.state = after;
   const PointAnswer at = point.trial(second, 3, after);

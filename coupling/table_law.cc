@@ -1,0 +1,109 @@
+#include "coupling/table_law.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+
+namespace densify::coupling {
+
+namespace {
+
+constexpr double start_margin = 1e-3;  // a density below the first of the loose powder
+constexpr double birth_margin = 0.02;  // between a point's birth and the nearest of the branches
+constexpr double least_shear = 0.01;   // of the mean pressure, that the die holds by shear
+constexpr double least_porosity = 1e-9;
+
+}  // namespace
+
+Mat6 yield_of(double axial, double lateral) {
+  const double p = (axial + 2 * lateral) / 3, q = std::max(axial - lateral, least_shear * p);
+  const double b2 = p * p + q * p / 1.5, a2 = 1.5 * q / p * b2;
+  Mat6 y = Mat6::Zero();
+  y.topLeftCorner<3, 3>().setConstant(1 / (9 * b2) - 0.5 / a2);
+  for (int k = 0; k < 3; ++k) y(k, k) += 1.5 / a2, y(k + 3, k + 3) = 3 / a2;
+  return y;
+}
+
+TableLaw::TableLaw(const ResponseTable& t, bool clamp)
+    : cold_(cold_curve(t.cold)),
+      youngs_modulus_(t.youngs_modulus),
+      diffusion_(t.diffusion),
+      reference_diffusion_(t.diffusion.effective(t.reference_temperature)),
+      activation_(t.activation_temperature),
+      expansion_(t.thermal_expansion),
+      clamp_(clamp) {
+  for (const SinteringBranch& b : t.sintering)
+    if (b.path == "die") branches_.push_back({b.birth, b.nodes.back().density, sintering_curve(b.nodes, b.birth)});
+  std::sort(branches_.begin(), branches_.end(), [](const Branch& a, const Branch& b) { return a.birth < b.birth; });
+  if (branches_.empty()) throw InputError("the table has no branch of path \"die\"");
+}
+
+fem::PorousResponse TableLaw::loose(const fem::PorousState& s) const {
+  const LooseValues n = loose_values(cold_.at<loose_rows>(std::log(s.density)));
+  return {youngs_modulus_(s.temperature) * full_tensor(n.stiffness), Mat6::Zero(), Vec6::Zero(),
+          yield_of(n.axial, n.lateral)};
+}
+
+fem::PorousResponse TableLaw::necked(const fem::PorousState& s) const {
+  using Values = Eigen::Matrix<double, necked_rows, 1>;
+  const auto at = [&](const Branch& b) -> Values {
+    return b.curve.at<necked_rows>(std::log(s.density / s.birth) / std::log(b.end / s.birth));
+  };
+  Values v;
+  double end = branches_.front().end;
+  if (s.birth <= branches_.front().birth) {
+    v = at(branches_.front());
+  } else if (s.birth >= branches_.back().birth) {
+    v = at(branches_.back());
+    end = branches_.back().end;
+  } else {
+    auto above = std::find_if(branches_.begin(), branches_.end(), [&](const Branch& b) { return b.birth > s.birth; });
+    const Branch &high = *above, &low = *(above - 1);
+    const double share = (s.birth - low.birth) / (high.birth - low.birth);
+    v = (1 - share) * at(low) + share * at(high);
+    end = std::lerp(low.end, high.end, share);
+  }
+  const NeckedValues n = necked_values(v);
+  const double diffusion = diffusion_.effective(s.temperature) / reference_diffusion_;
+  const double closing = std::min(1.0, std::max(1 - s.density, least_porosity) / (1 - end));
+  fem::PorousResponse r;
+  r.stiffness = youngs_modulus_(s.temperature) * full_tensor(n.stiffness);
+  r.fluidity = diffusion * closing * inverse_tensor(n.viscosity);
+  r.sintering_stress << n.sintering_stress[0], n.sintering_stress[0], n.sintering_stress[1], 0, 0, 0;
+  return r;
+}
+
+fem::PorousResponse TableLaw::response(const fem::PorousState& s) const {
+  return s.birth > 0 ? necked(s) : loose(s);
+}
+
+double TableLaw::thermal_strain(double temperature) const {
+  return expansion_ * temperature;
+}
+
+std::string TableLaw::outside(const fem::PorousState& s) const {
+  if (clamp_) return {};
+  const auto sentence = [](const std::string& what, double value, double low, double high) {
+    return fmt::format(
+        "{} {:.4f} is outside the table, which holds from {:.4f} to {:.4f}; make a table of a wider range, or set "
+        "press.table.extrapolate = \"clamp\"",
+        what, value, low, high);
+  };
+  const double low = std::exp(cold_.lowest()), high = std::exp(cold_.highest());
+  if (s.birth == 0)
+    return s.density >= low - start_margin && s.density <= high
+               ? ""
+               : sentence("the relative density of the loose powder", s.density, low, high);
+  const Branch &first = branches_.front(), &last = branches_.back();
+  if (s.birth < first.birth - birth_margin || s.birth > last.birth + birth_margin)
+    return sentence("the relative density at which necks begin", s.birth, first.birth - birth_margin,
+                    last.birth + birth_margin);
+  const double end = std::max(first.end, last.end);
+  if (s.density > end) return sentence("the relative density", s.density, first.birth, end);
+  return {};
+}
+
+}  // namespace densify::coupling
