@@ -136,7 +136,7 @@ SinteringBranch average_sintering(const std::vector<PathRecord>& records, const 
     const Mean m = mean_of(all);
     SinteringNode n = sintering_node(m.value);
     n.density = birth * std::exp(share * std::log(end / birth));
-    n.viscosity_scatter = m.deviation[0];
+    n.viscosity_scatter = m.deviation[strength_rows];
     n.sintering_stress_scatter = m.deviation[11] / std::abs(m.value[11]);
     branch.nodes.push_back(n);
   }

@@ -32,16 +32,16 @@ ColdNode cold_node(const Eigen::VectorXd& v) {
 
 Eigen::VectorXd curve_values(const SinteringNode& n) {
   Eigen::VectorXd v(16);
-  put(v, 0, n.viscosity);
-  put(v, 5, n.stiffness);
+  put(v, 0, n.stiffness);
+  put(v, strength_rows, n.viscosity);
   v.tail<6>() << n.sintering_stress[0], n.sintering_stress[1], n.viscosity_scatter, n.sintering_stress_scatter,
       n.neck_state, n.at_equilibrium;
   return v;
 }
 
 SinteringNode sintering_node(const Eigen::VectorXd& v) {
-  const NeckedValues n = necked_values(v.head<necked_rows>());
-  return {0, n.viscosity, n.stiffness, n.sintering_stress, v[12], v[13], v[14], v[15]};
+  const FlowValues n = flow_values(v.head<flow_rows>());
+  return {0, n.viscosity, stiffness_values(v.head<strength_rows>()), n.sintering_stress, v[12], v[13], v[14], v[15]};
 }
 
 LooseValues loose_values(const Eigen::Matrix<double, loose_rows, 1>& v) {
@@ -49,8 +49,12 @@ LooseValues loose_values(const Eigen::Matrix<double, loose_rows, 1>& v) {
   return {axial, axial * v[1], take(v, 3)};
 }
 
-NeckedValues necked_values(const Eigen::Matrix<double, necked_rows, 1>& v) {
-  return {take(v, 0), take(v, 5), {v[10], v[11]}};
+AxialTensor stiffness_values(const Eigen::Matrix<double, strength_rows, 1>& v) {
+  return take(v, 0);
+}
+
+FlowValues flow_values(const Eigen::Matrix<double, flow_rows, 1>& v) {
+  return {take(v, strength_rows), {v[10], v[11]}};
 }
 
 ShapePreserving cold_curve(const std::vector<ColdNode>& nodes) {

@@ -14,18 +14,20 @@ Eigen::VectorXd curve_values(const SinteringNode&);
 ColdNode cold_node(const Eigen::VectorXd&);
 SinteringNode sintering_node(const Eigen::VectorXd&);
 
-/// What of them a material needs.
-inline constexpr int loose_rows = 8, necked_rows = 12;
+/// What of them a material needs, from the first so many: of loose powder all; of necks their stiffness, or that they
+/// flow.
+inline constexpr int loose_rows = 8, strength_rows = 5, flow_rows = 12;
 struct LooseValues {
   double axial, lateral;  ///< [Pa]
   AxialTensor stiffness;
 };
 LooseValues loose_values(const Eigen::Matrix<double, loose_rows, 1>&);
-struct NeckedValues {
-  AxialTensor viscosity, stiffness;
+AxialTensor stiffness_values(const Eigen::Matrix<double, strength_rows, 1>&);
+struct FlowValues {
+  AxialTensor viscosity;
   std::array<double, 2> sintering_stress;
 };
-NeckedValues necked_values(const Eigen::Matrix<double, necked_rows, 1>&);
+FlowValues flow_values(const Eigen::Matrix<double, flow_rows, 1>&);
 
 /// Nodes over ln(density).
 ShapePreserving cold_curve(const std::vector<ColdNode>&);

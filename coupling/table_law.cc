@@ -41,43 +41,37 @@ TableLaw::TableLaw(const ResponseTable& t, bool clamp)
   if (branches_.empty()) throw InputError("the table has no branch of path \"die\"");
 }
 
-fem::PorousResponse TableLaw::loose(const fem::PorousState& s) const {
-  const LooseValues n = loose_values(cold_.at<loose_rows>(std::log(s.density)));
-  return {youngs_modulus_(s.temperature) * full_tensor(n.stiffness), Mat6::Zero(), Vec6::Zero(),
-          yield_of(n.axial, n.lateral)};
+template <int N>
+std::pair<Eigen::Matrix<double, N, 1>, double> TableLaw::necked(const fem::PorousState& s) const {
+  const auto at = [&](const Branch& b) -> Eigen::Matrix<double, N, 1> {
+    return b.curve.at<N>(std::log(s.density / s.birth) / std::log(b.end / s.birth));
+  };
+  if (s.birth <= branches_.front().birth) return {at(branches_.front()), branches_.front().end};
+  if (s.birth >= branches_.back().birth) return {at(branches_.back()), branches_.back().end};
+  const auto above =
+      std::find_if(branches_.begin(), branches_.end(), [&](const Branch& b) { return b.birth > s.birth; });
+  const Branch &high = *above, &low = *(above - 1);
+  const double share = (s.birth - low.birth) / (high.birth - low.birth);
+  return {(1 - share) * at(low) + share * at(high), std::lerp(low.end, high.end, share)};
 }
 
-fem::PorousResponse TableLaw::necked(const fem::PorousState& s) const {
-  using Values = Eigen::Matrix<double, necked_rows, 1>;
-  const auto at = [&](const Branch& b) -> Values {
-    return b.curve.at<necked_rows>(std::log(s.density / s.birth) / std::log(b.end / s.birth));
-  };
-  Values v;
-  double end = branches_.front().end;
-  if (s.birth <= branches_.front().birth) {
-    v = at(branches_.front());
-  } else if (s.birth >= branches_.back().birth) {
-    v = at(branches_.back());
-    end = branches_.back().end;
-  } else {
-    auto above = std::find_if(branches_.begin(), branches_.end(), [&](const Branch& b) { return b.birth > s.birth; });
-    const Branch &high = *above, &low = *(above - 1);
-    const double share = (s.birth - low.birth) / (high.birth - low.birth);
-    v = (1 - share) * at(low) + share * at(high);
-    end = std::lerp(low.end, high.end, share);
-  }
-  const NeckedValues n = necked_values(v);
+fem::PorousFlow TableLaw::flow(const fem::PorousState& s) const {
+  if (s.birth == 0) return {Mat6::Zero(), Vec6::Zero()};
+  const auto [v, end] = necked<flow_rows>(s);
+  const FlowValues n = flow_values(v);
   const double diffusion = diffusion_.effective(s.temperature) / reference_diffusion_;
   const double closing = std::min(1.0, std::max(1 - s.density, least_porosity) / (1 - end));
-  fem::PorousResponse r;
-  r.stiffness = youngs_modulus_(s.temperature) * full_tensor(n.stiffness);
-  r.fluidity = diffusion * closing * inverse_tensor(n.viscosity);
-  r.sintering_stress << n.sintering_stress[0], n.sintering_stress[0], n.sintering_stress[1], 0, 0, 0;
-  return r;
+  fem::PorousFlow f;
+  f.fluidity = diffusion * closing * inverse_tensor(n.viscosity);
+  f.sintering_stress << n.sintering_stress[0], n.sintering_stress[0], n.sintering_stress[1], 0, 0, 0;
+  return f;
 }
 
-fem::PorousResponse TableLaw::response(const fem::PorousState& s) const {
-  return s.birth > 0 ? necked(s) : loose(s);
+fem::PorousStrength TableLaw::strength(const fem::PorousState& s) const {
+  const double youngs = youngs_modulus_(s.temperature);
+  if (s.birth > 0) return {youngs * full_tensor(stiffness_values(necked<strength_rows>(s).first))};
+  const LooseValues n = loose_values(cold_.at<loose_rows>(std::log(s.density)));
+  return {youngs * full_tensor(n.stiffness), yield_of(n.axial, n.lateral)};
 }
 
 double TableLaw::thermal_strain(double temperature) const {

@@ -18,7 +18,8 @@ class TableLaw : public fem::PorousLaw {
   /// InputError when the table lacks a branch.
   TableLaw(const ResponseTable&, bool clamp);
 
-  fem::PorousResponse response(const fem::PorousState&) const override;
+  fem::PorousFlow flow(const fem::PorousState&) const override;
+  fem::PorousStrength strength(const fem::PorousState&) const override;
   double thermal_strain(double temperature) const override;
   double activation_temperature() const override { return activation_; }
   std::string outside(const fem::PorousState&) const override;
@@ -29,8 +30,9 @@ class TableLaw : public fem::PorousLaw {
     ShapePreserving curve;
   };
 
-  fem::PorousResponse loose(const fem::PorousState&) const;
-  fem::PorousResponse necked(const fem::PorousState&) const;
+  /// The first N of the table's numbers for powder with necks, and the density where its branch ends.
+  template <int N>
+  std::pair<Eigen::Matrix<double, N, 1>, double> necked(const fem::PorousState&) const;
 
   ShapePreserving cold_;
   std::vector<Branch> branches_;

@@ -19,20 +19,30 @@ Mat6 isotropic_inverse(double bulk_inverse, double shear_inverse) {
   return s;
 }
 
-PorousResponse SkorohodOlevsky::response(const PorousState& s) const {
+namespace {
+
+/// Beyond these is a Newton iteration on its way.
+double within(double density) {
+  return std::clamp(density, 0.01, 1.0);
+}
+
+}  // namespace
+
+PorousFlow SkorohodOlevsky::flow(const PorousState& s) const {
   constexpr double gas_constant = 8.31446261815324;
-  const double rho = std::clamp(s.density, 0.01, 1.0);  // beyond it is a Newton iteration on its way
-  const double theta = 1 - rho;
+  const double rho = within(s.density), theta = 1 - rho;
   const double eta = p_.viscosity * std::exp(p_.activation_enthalpy / gas_constant *
                                              (1 / s.temperature - 1 / p_.reference_temperature));
-  const double share = rho * rho;
-  PorousResponse r;
-  r.stiffness = isotropic_tensor(share * p_.youngs_modulus / (3 * (1 - 2 * p_.poissons_ratio)),
-                                 share * p_.youngs_modulus / (2 * (1 + p_.poissons_ratio)));
-  r.fluidity = isotropic_inverse(0.75 * theta / (rho * rho * rho * eta), 1 / (eta * rho * rho));
-  r.sintering_stress.setZero();
-  r.sintering_stress.head<3>().setConstant(3 * p_.surface_energy / p_.particle_radius * rho * rho);
-  return r;
+  PorousFlow f;
+  f.fluidity = isotropic_inverse(0.75 * theta / (rho * rho * rho * eta), 1 / (eta * rho * rho));
+  f.sintering_stress.setZero();
+  f.sintering_stress.head<3>().setConstant(3 * p_.surface_energy / p_.particle_radius * rho * rho);
+  return f;
+}
+
+PorousStrength SkorohodOlevsky::strength(const PorousState& s) const {
+  const double youngs = std::pow(within(s.density), 2) * p_.youngs_modulus;
+  return {isotropic_tensor(youngs / (3 * (1 - 2 * p_.poissons_ratio)), youngs / (2 * (1 + p_.poissons_ratio)))};
 }
 
 double SkorohodOlevsky::thermal_strain(double temperature) const {

@@ -8,10 +8,12 @@
 namespace densify::fem {
 
 /// Strain rate = elastic + thermal + fluidity (stress - sintering stress) + what keeps stress : yield : stress <= 1.
-struct PorousResponse {
+struct PorousFlow {
+  Mat6 fluidity;          ///< inverse of the viscosity, strain rates as engineering shears [1/(Pa s)]
+  Vec6 sintering_stress;  ///< stress at no inelastic rate: positive where the free body shrinks [Pa]
+};
+struct PorousStrength {
   Mat6 stiffness;             ///< elastic [Pa]
-  Mat6 fluidity;              ///< inverse of the viscosity, strain rates as engineering shears [1/(Pa s)]
-  Vec6 sintering_stress;      ///< stress at no inelastic rate: positive where the free body shrinks [Pa]
   Mat6 yield = Mat6::Zero();  ///< of grains that slide past each other: zero where they do not [1/Pa^2]
 };
 
@@ -27,7 +29,8 @@ class PorousLaw {
   virtual ~PorousLaw() = default;
 
   /// Defined above full density too, where a Newton iteration may look.
-  virtual PorousResponse response(const PorousState&) const = 0;
+  virtual PorousFlow flow(const PorousState&) const = 0;
+  virtual PorousStrength strength(const PorousState&) const = 0;
 
   /// Necks begin to grow where the temperature first reaches this [K].
   virtual double activation_temperature() const { return 0; }
@@ -64,7 +67,8 @@ class SkorohodOlevsky : public PorousLaw {
   /// Elastic moduli of the porous solid are those of the dense one times (1 - theta)^2, where nothing else is known.
   explicit SkorohodOlevsky(const Parameters& p) : p_(p) {}
 
-  PorousResponse response(const PorousState&) const override;
+  PorousFlow flow(const PorousState&) const override;
+  PorousStrength strength(const PorousState&) const override;
   double thermal_strain(double temperature) const override;
 
  private:

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int most_iterations = 30;
 constexpr double sliding = 100;              // strain for a stress that is twice what yields
+constexpr int guesses = 5;                   // of how far grains slide
 constexpr int most_parts = 64;               // of the strain of a step
 constexpr double tolerance = 1e-13;          // of the inelastic strain
 constexpr double sliding_tolerance = 1e-11;  // `sliding` times what rounding leaves of a stress
@@ -26,26 +27,25 @@ double middle_slope(double before, double after) {
   return before < 1 && after < 1 ? 0.5 * std::sqrt((1 - before) / (1 - after)) * after : 0;
 }
 
-PorousResponse slope_of(const PorousLaw& law, PorousState s, const PorousResponse& here) {
-  s.density -= density_increment;
-  const PorousResponse below = law.response(s);
-  return {(here.stiffness - below.stiffness) / density_increment, (here.fluidity - below.fluidity) / density_increment,
-          (here.sintering_stress - below.sintering_stress) / density_increment,
-          (here.yield - below.yield) / density_increment};
-}
-
-/// The law at the middle of the step and at its end, and how it changes with the density there.
+/// The flow at the middle of the step, the strength at its end, and how they change with the density there.
 struct LawOverStep {
-  PorousResponse middle, middle_slope, end, end_slope;
+  PorousFlow flow, flow_slope;
+  PorousStrength strength, strength_slope;
 
   LawOverStep(const PorousLaw& law, double density_before, double density, double birth, const PointStep& step) {
-    const PorousState half{middle_density(density_before, density), 0.5 * (step.temperature_before + step.temperature),
-                           birth};
-    middle = law.response(half);
-    middle_slope = slope_of(law, half, middle);
-    const PorousState whole{density, step.temperature, birth};
-    end = law.response(whole);
-    end_slope = slope_of(law, whole, end);
+    PorousState middle{middle_density(density_before, density), 0.5 * (step.temperature_before + step.temperature),
+                       birth};
+    flow = law.flow(middle);
+    middle.density -= density_increment;
+    const PorousFlow below = law.flow(middle);
+    flow_slope = {(flow.fluidity - below.fluidity) / density_increment,
+                  (flow.sintering_stress - below.sintering_stress) / density_increment};
+    PorousState end{density, step.temperature, birth};
+    strength = law.strength(end);
+    end.density -= density_increment;
+    const PorousStrength softer = law.strength(end);
+    strength_slope = {(strength.stiffness - softer.stiffness) / density_increment,
+                      (strength.yield - softer.yield) / density_increment};
   }
 };
 
@@ -58,7 +58,7 @@ struct Sliding {
   Vec6 by_density = Vec6::Zero();
   double q_by_density = 0;
 
-  Sliding(const PorousResponse& at, const PorousResponse& slope, const Vec6& stress) {
+  Sliding(const PorousStrength& at, const PorousStrength& slope, const Vec6& stress) {
     const Vec6 y = at.yield * stress, changed = slope.yield * stress;
     q = std::sqrt(stress.dot(y));
     if (!(q > 0)) return;
@@ -116,16 +116,40 @@ class PointUpdate {
     strain.head<3>().array() -= thermal_;
     for (int k = 1; k <= parts; ++k) {
       trial_ = start_ + double(k) / parts * strain;
-      const Vec7 guess = x_;
+      const Vec7 before = x_;
       x_[6] = 0;
       if (!iterate(false)) return false;
       if (!(q_ > 1)) continue;
       slides_ = true;
-      if (guess[6] > 0) x_ = guess;
+      if (before[6] > 0)
+        x_ = before;
+      else
+        guess_sliding();
       if (!iterate(true)) return false;
     }
     return true;
   }
+
+  /// Slides from the strain found without it to where q = 1 by the law as it is there: stress(l) = (I + l C Y)^-1
+  /// stress, where 1/q is nearly linear in l.
+  void guess_sliding() {
+    const double density = density_before_ * std::exp(-x_.head<3>().sum());
+    const PorousStrength at = law_.strength({density, step_.temperature, birth_});
+    const Mat6 turned = at.stiffness * at.yield;
+    const Vec6 first = at.stiffness * (trial_ - x_.head<6>());
+    Vec6 stress = first;
+    double l = 0;
+    for (int k = 0; k < guesses; ++k) {
+      const Eigen::PartialPivLU<Mat6> lu(Mat6::Identity() + l * turned);
+      stress = lu.solve(first);
+      const Vec6 y = at.yield * stress;
+      const double q = std::sqrt(stress.dot(y)), slope = -y.dot(lu.solve(turned * stress)) / q;
+      l = std::max(0.0, l + (1 / q - 1) * q * q / slope);
+    }
+    x_.head<6>() += l * (at.yield * stress);
+    x_[6] = l * std::sqrt(at.yield(2, 2));
+  }
+
   bool iterate(bool slides);
 
   const PorousLaw& law_;
@@ -146,28 +170,28 @@ bool PointUpdate::iterate(bool slides) {
     const double density = density_before_ * std::exp(-inelastic.head<3>().sum());
     const LawOverStep at(law_, density_before_, density, birth_, step_);
     const Vec6 elastic = trial_ - inelastic;
-    const Vec6 stress = at.end.stiffness * elastic;
-    const Vec6 stiffening = at.end_slope.stiffness * elastic;
-    const Mat6 flow = step_.step * at.middle.fluidity;
-    const Vec6 drive = stress - at.middle.sintering_stress;
-    const Sliding slide(at.end, at.end_slope, stress);
+    const Vec6 stress = at.strength.stiffness * elastic;
+    const Vec6 stiffening = at.strength_slope.stiffness * elastic;
+    const Mat6 flow = step_.step * at.flow.fluidity;
+    const Vec6 drive = stress - at.flow.sintering_stress;
+    const Sliding slide(at.strength, at.strength_slope, stress);
     q_ = slide.q;
     // By stress and by density, of the right side of x.
     const Mat6 by_stress = flow + x_[6] * slide.by_stress;
-    const Vec6 by_middle = step_.step * (at.middle_slope.fluidity * drive) - flow * at.middle_slope.sintering_stress;
+    const Vec6 by_middle = step_.step * (at.flow_slope.fluidity * drive) - flow * at.flow_slope.sintering_stress;
     const Vec6 by_density = by_stress * stiffening + x_[6] * slide.by_density;
     Mat7 jacobian = Mat7::Identity();
     Vec7 residual = x_;
     Eigen::Matrix<double, 7, 6> by_trial;
     residual.head<6>() -= flow * drive + x_[6] * slide.direction;
-    jacobian.topLeftCorner<6, 6>() += by_stress * at.end.stiffness;
+    jacobian.topLeftCorner<6, 6>() += by_stress * at.strength.stiffness;
     jacobian.topLeftCorner<6, 3>().colwise() +=
         middle_slope(density_before_, density) * by_middle + density * by_density;
-    by_trial.topRows<6>() = by_stress * at.end.stiffness;
+    by_trial.topRows<6>() = by_stress * at.strength.stiffness;
     by_trial.row(6).setZero();
     if (slides) {
       jacobian.topRightCorner<6, 1>() -= slide.direction;
-      const Vec6 q_by_strain = at.end.stiffness * slide.q_by_stress;
+      const Vec6 q_by_strain = at.strength.stiffness * slide.q_by_stress;
       residual[6] = x_[6] / sliding - (slide.q - 1);
       jacobian(6, 6) = 1 / sliding;
       jacobian.bottomLeftCorner<1, 6>() = q_by_strain.transpose();
@@ -177,7 +201,7 @@ bool PointUpdate::iterate(bool slides) {
     const Eigen::PartialPivLU<Mat7> lu(jacobian);
     if (solved) {  // one more look, for the tangent at the solution
       const Mat6 moved = lu.solve(by_trial).topRows<6>();
-      answer_.tangent = at.end.stiffness * (Mat6::Identity() - moved);
+      answer_.tangent = at.strength.stiffness * (Mat6::Identity() - moved);
       answer_.tangent -= density * stiffening * moved.topRows<3>().colwise().sum();
       answer_.stress = stress;
       answer_.density = density;

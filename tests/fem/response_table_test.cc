@@ -139,15 +139,16 @@ TEST(TableLaw, HasTheNodesOfTheTable) {
   const ResponseTable t = made_up();
   const TableLaw law(t, false);
   const auto& node = t.sintering[0].nodes[7];
-  const auto r = law.response({node.density, 1600, 0.65});
-  EXPECT_LT((r.fluidity * full_tensor(node.viscosity) - Mat6::Identity()).norm(), 1e-9);
-  EXPECT_NEAR(r.sintering_stress[2], node.sintering_stress[1], 1e-3);
-  EXPECT_LT((r.stiffness - 150e9 * full_tensor(node.stiffness)).norm() / r.stiffness.norm(), 1e-12);
-  const auto cooler = law.response({node.density, 1400, 0.65});
-  EXPECT_NEAR(cooler.fluidity(2, 2) / r.fluidity(2, 2), t.diffusion.effective(1400) / t.diffusion.effective(1600),
+  const auto flow = law.flow({node.density, 1600, 0.65});
+  EXPECT_LT((flow.fluidity * full_tensor(node.viscosity) - Mat6::Identity()).norm(), 1e-9);
+  EXPECT_NEAR(flow.sintering_stress[2], node.sintering_stress[1], 1e-3);
+  const Mat6 stiffness = law.strength({node.density, 1600, 0.65}).stiffness;
+  EXPECT_LT((stiffness - 150e9 * full_tensor(node.stiffness)).norm() / stiffness.norm(), 1e-12);
+  const auto cooler = law.flow({node.density, 1400, 0.65});
+  EXPECT_NEAR(cooler.fluidity(2, 2) / flow.fluidity(2, 2), t.diffusion.effective(1400) / t.diffusion.effective(1600),
               1e-9);
   const double between = 0.675, rho = between * std::pow(0.98 / between, 7 / 20.0);
-  EXPECT_NEAR(law.response({rho, 1600, between}).sintering_stress[2], node.sintering_stress[1], 1e-3);
+  EXPECT_NEAR(law.flow({rho, 1600, between}).sintering_stress[2], node.sintering_stress[1], 1e-3);
 }
 
 // No state beyond the table without a word; with "clamp" the viscosity grows as 1/porosity, so that no pore closes.
@@ -158,8 +159,8 @@ TEST(TableLaw, EndsWithAWord) {
   EXPECT_NE(strict.outside({0.985, 1600, 0.68}).find("0.9800"), std::string::npos);
   EXPECT_NE(strict.outside({0.8, 1600, 0.6}).find("necks begin"), std::string::npos);
   EXPECT_EQ(clamped.outside({0.985, 1600, 0.68}), "");
-  EXPECT_NEAR(clamped.response({0.99, 1600, 0.68}).fluidity(2, 2) / clamped.response({0.98, 1600, 0.68}).fluidity(2, 2),
-              0.5, 1e-9);
+  EXPECT_NEAR(clamped.flow({0.99, 1600, 0.68}).fluidity(2, 2) / clamped.flow({0.98, 1600, 0.68}).fluidity(2, 2), 0.5,
+              1e-9);
 }
 
 TEST(ResponseTable, ReadsBackWhatIsWritten) {
