@@ -182,15 +182,8 @@ void Simulation::set_environment() {
   if (a != 0) {
     const double stretch = (1 + a * dt) / (1 + a * old_dt);
     const double rate = state_.last_step > 0 ? (1 - 1 / stretch) / state_.last_step : 0.0;
-    for (auto& w : state_.walls.wall) {
-      if (w.shape == WallShape::cylinder)
-        w.radius *= stretch;
-      else if (std::abs(w.normal[2]) < 0.5)
-        w.point *= stretch;  // lateral planes of a box
-      else
-        continue;
-      w.thermal_rate = rate;
-    }
+    for (auto& w : state_.walls.wall)
+      if (w.stretch(stretch)) w.thermal_rate = rate;
     if (state_.punch.mass > 0) state_.punch.area = punch_area();
   }
   for (const double growth : expansion_step_)
@@ -303,10 +296,7 @@ double Simulation::leapfrog_step() {
   const double fastest =
       leapfrog(state_.particles, state_.cell, {kick_step, step}, setup_.integration.drag, setup_.integration.threads);
   note_travel(fastest, step);
-  for (auto& w : state_.walls.wall) {
-    w.point += step * w.velocity;
-    w.radius += step * w.radius_rate;
-  }
+  for (auto& w : state_.walls.wall) w.move(step);
   return step;
 }
 

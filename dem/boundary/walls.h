@@ -2,6 +2,8 @@
 // Rigid walls: planes and an upright cylinder, with contacts of the loose law and friction but no necks (Hertz with the
 // particle's own radius and the effective modulus of particle and wall).
 
+#include <cmath>
+
 #include "dem/contact/force_pass.h"
 
 namespace densify::dem {
@@ -19,6 +21,23 @@ struct Wall {
   Vec3 velocity = Vec3::Zero();  ///< of a plane [m/s]
   double radius_rate = 0;        ///< of a cylinder [m/s]
   double thermal_rate = 0;       ///< relative growth rate of a lateral wall's position by expansion [1/s]
+
+  /// Moves on for a time [s].
+  void move(double step) {
+    point += step * velocity;
+    radius += step * radius_rate;
+  }
+  /// Stretches the container across by heat; false for a wall that this leaves alone, bottom or punch.
+  bool stretch(double factor) {
+    constexpr double lateral = 0.5;
+    if (shape == WallShape::cylinder)
+      radius *= factor;
+    else if (std::abs(normal[2]) < lateral)
+      point *= factor;
+    else
+      return false;
+    return true;
+  }
 };
 
 /// What walls are made of.

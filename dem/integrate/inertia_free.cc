@@ -135,13 +135,8 @@ void InertiaFree::look_ahead(const State& s, const Trial& t) {
   for (std::size_t w = 0; w < walls_ahead_.wall.size(); ++w) {
     Wall& wall = walls_ahead_.wall[w];
     if (t.guided == w) wall.velocity = velocity_[network_.rows() - 1] * Vec3::UnitZ();
-    wall.point += t.step * wall.velocity;
-    wall.radius += t.step * wall.radius_rate;
-    constexpr double lateral = 0.5;
-    if (wall.shape == WallShape::cylinder)
-      wall.radius *= t.wall_stretch;
-    else if (std::abs(wall.normal[2]) < lateral)
-      wall.point *= t.wall_stretch;
+    wall.move(t.step);
+    wall.stretch(t.wall_stretch);
   }
 }
 
@@ -276,10 +271,7 @@ void InertiaFree::apply(State& s, const Trial& t) const {
     s.punch.mean_acceleration = 0;
     s.walls.wall[*t.guided].velocity = walls_ahead_.wall[*t.guided].velocity;
   }
-  for (auto& w : s.walls.wall) {
-    w.point += t.step * w.velocity;
-    w.radius += t.step * w.radius_rate;
-  }
+  for (auto& w : s.walls.wall) w.move(t.step);
 }
 
 double InertiaFree::move(State& s, const Setup& setup, const PairTable& table, const PoreClosure& pores,

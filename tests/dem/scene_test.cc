@@ -10,6 +10,7 @@
 #include "base/scene_document.h"
 #include "dem/io/material_library.h"
 #include "dem/io/particle_import.h"
+#include "tests/support/periodic_scene.h"
 
 using namespace densify;
 using namespace densify::dem;
@@ -255,16 +256,7 @@ TEST(Scene, ActivationFollowsTheMeltingTemperature) {
 // Stages drive a cell; a component keeps its goal until a stage names it, and a pressure of nothing at the start drives
 // nothing.
 TEST(Scene, StagesDriveACell) {
-  const std::string text = R"toml([materials.NiAl]
-library = "NiAl"
-[[powder]]
-material = "NiAl"
-number = 100
-sizes = "list"
-diameters = ["4 um"]
-[specimen]
-shape = "periodic"
-[process]
+  const std::string text = std::string(test::kPeriodicPowder) + R"toml([process]
 start_pressure = "0 Pa"
 [[process.stage]]
 name = "rest"

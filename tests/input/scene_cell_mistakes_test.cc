@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/input/scene_mistake.h"
+#include "tests/support/periodic_scene.h"
 
 using namespace densify::test;
 
@@ -10,23 +11,15 @@ namespace {
 
 /// kGood in a periodic cell whose first stage, from line 26 on has `keys`.
 std::string periodic(std::string_view keys, std::string_view after = "") {
-  std::string text(R"toml([materials.NiAl]
-library = "NiAl"
-[[powder]]
-material = "NiAl"
-number = 100
-sizes = "list"
-diameters = ["4 um"]
-[specimen]
-shape = "periodic"
-[contact.sintering]
+  std::string text(kPeriodicPowder);
+  text += R"toml([contact.sintering]
 model = "viscoelastic"
 [process]
 start_temperature = "1400 degC"
 [[process.stage]]
 name = "pressing"
 duration = "1 h"
-)toml");
+)toml";
   return text.append(keys).append("\n[integration]\nmass_scaling = 1e17\n").append(after);
 }
 
