@@ -59,6 +59,7 @@ struct Sliding {
   double q_by_density = 0;
 
   Sliding(const PorousStrength& at, const PorousStrength& slope, const Vec6& stress) {
+    if (at.yield(2, 2) == 0) return;
     const Vec6 y = at.yield * stress, changed = slope.yield * stress;
     q = std::sqrt(stress.dot(y));
     if (!(q > 0)) return;
@@ -198,9 +199,9 @@ bool PointUpdate::iterate(bool slides) {
       jacobian.bottomLeftCorner<1, 3>().array() += density * (slide.q_by_density + slide.q_by_stress.dot(stiffening));
       by_trial.row(6) = q_by_strain.transpose();
     }
-    const Eigen::PartialPivLU<Mat7> lu(jacobian);
     if (solved) {  // one more look, for the tangent at the solution
-      const Mat6 moved = lu.solve(by_trial).topRows<6>();
+      const Mat6 moved = slides ? Mat6(jacobian.partialPivLu().solve(by_trial).topRows<6>())
+                                : Mat6(jacobian.topLeftCorner<6, 6>().partialPivLu().solve(by_trial.topRows<6>()));
       answer_.tangent = at.strength.stiffness * (Mat6::Identity() - moved);
       answer_.tangent -= density * stiffening * moved.topRows<3>().colwise().sum();
       answer_.stress = stress;
@@ -210,7 +211,11 @@ bool PointUpdate::iterate(bool slides) {
       answer_.thermal = stress.head<3>().sum() * thermal_;
       return true;
     }
-    Vec7 change = lu.solve(residual);
+    Vec7 change = Vec7::Zero();
+    if (slides)
+      change = jacobian.partialPivLu().solve(residual);
+    else
+      change.head<6>() = jacobian.topLeftCorner<6, 6>().partialPivLu().solve(residual.head<6>());
     const double volume = std::abs(change.head<3>().sum());
     if (!std::isfinite(change.sum())) break;
     if (volume > 0.1) change *= 0.1 / volume;  // a density within reach of the slope
