@@ -17,7 +17,9 @@ namespace {
 
 using namespace densify;
 
-void print_summary(const coupling::PressScene& scene, const fem::PressRow& r, const std::filesystem::path& folder) {
+void print_summary(const coupling::PressScene& scene, const coupling::PressSummary& summary,
+                   const std::filesystem::path& folder) {
+  const fem::PressRow& r = summary.row;
   const double radius = std::sqrt(r.volume / (std::numbers::pi * r.height));
   fmt::print("\nrelative density {:.4f} +- {:.4f} numerical, from {:.4f} to {:.4f} in the body\n", r.density.mean,
              r.density_error, r.density.least, r.density.most);
@@ -30,6 +32,13 @@ void print_summary(const coupling::PressScene& scene, const fem::PressRow& r, co
       100 * std::abs(r.work - r.dissipated - r.slid - r.thermal - r.stored) /
           std::max({std::abs(r.work), std::abs(r.dissipated), std::abs(r.thermal), 1e-300}));
   fmt::print("{} steps ({} rejected), {} Newton iterations\n", r.steps, r.rejected, r.iterations);
+  if (const auto& live = summary.live)
+    fmt::print(
+        "{} volume elements, {:.2f} MB each: {} steps, {} linear systems, in {} solutions of the body; stresses off "
+        "their "
+        "laws by at most {:.2g} of the largest, power of contacts off by {:.2g}, shears that were dropped {:.2g}\n",
+        live->elements, 1e-6 * double(live->bytes) / double(live->elements), live->steps, live->solutions, live->rounds,
+        live->largest_mismatch, live->power_mismatch, live->dropped_stress);
   fmt::print("warnings: {}\n", scene.warnings.empty() ? "none" : std::to_string(scene.warnings.size()));
   for (const auto& w : scene.warnings) fmt::print("  {}\n", w);
   fmt::print("\nresults in {}\n", folder.string());
@@ -39,8 +48,9 @@ void print_check(const coupling::PressScene& scene) {
   const auto& s = scene.size;
   const bool plane = scene.geometry == coupling::PressGeometry::axisymmetric;
   fmt::print("{}\n", scene.title);
-  fmt::print("specimen                        {:.4g} mm x {:.4g} mm, relative density {:.4g}\n", 2e3 * s.radius,
-             1e3 * s.height, scene.density);
+  fmt::print("specimen                        {:.4g} mm x {:.4g} mm, {}\n", 2e3 * s.radius, 1e3 * s.height,
+             scene.coupling == coupling::Coupling::live ? "of live volume elements"
+                                                        : fmt::format("relative density {:.4g}", scene.density));
   fmt::print("elements                        {} of degree {}, {}\n", fem::element_count(s, plane ? 2 : 3),
              scene.settings.degree, plane ? "a body of revolution" : "a quarter in three dimensions");
   fmt::print("process                         {:.4g} s in {} stages, then {:.4g} s of ejection\n",
@@ -82,7 +92,7 @@ int run_main(int argc, char** argv) {
   options.progress = [&](const dem::Progress& p) { line.show(p); };
   options.stop = &app::catch_signals();
   try {
-    const fem::PressRow last = coupling::run_press(scene, options, MPI_COMM_WORLD);
+    const coupling::PressSummary last = coupling::run_press(scene, options, MPI_COMM_WORLD);
     line.end();
     if (first && !run.quiet) print_summary(scene, last, options.folder);
   } catch (...) {

@@ -38,11 +38,12 @@ class Case {
         options_(options),
         comm_(comm),
         first_(dealii::Utilities::MPI::this_mpi_process(comm) == 0),
-        body_(scene.size, material.point, scene.density, scene.schedule->temperature(0),
+        live_(material.live),
+        body_(scene.size, material.point, material.density, scene.schedule->temperature(0),
               with_wall(scene, material.dense_youngs_modulus), comm),
         run_(body_, *scene.schedule, scene.press, scene.control) {}
 
-  fem::PressRow run();
+  PressSummary run();
 
  private:
   void begin();
@@ -55,6 +56,7 @@ class Case {
   const PressOptions& options_;
   const MPI_Comm comm_;
   const bool first_;
+  const std::shared_ptr<LiveMaterial> live_;
   fem::PressBody<dim> body_;
   fem::PressRun<dim> run_;
   std::string history_, fields_;
@@ -83,6 +85,7 @@ void Case<dim>::resume() {
                      "; only [output] may change");
   body_.restore(c.body);
   run_.restore({c.row, c.next, c.step, c.step_before, c.height_at_ejection, c.rate, c.rate_before});
+  if (live_) live_->restore(c.live);
   fields_ = c.fields;
   fields_at_ = c.fields_at;
   started_at_ = c.row.time, started_steps_ = c.row.steps;
@@ -119,7 +122,8 @@ void Case<dim>::write_checkpoint() {
                           memory.rate,
                           memory.rate_before,
                           fields_at_,
-                          fields_};
+                          fields_,
+                          live_ ? live_->memory() : LiveMemory{}};
   if (!first_) return;
   dem::write_atomically(options_.folder / "history.csv", {history_}, dem::Durability::kill);
   write_press_checkpoint(options_.folder / "checkpoint.h5", c);
@@ -127,15 +131,17 @@ void Case<dim>::write_checkpoint() {
 
 template <int dim>
 void Case<dim>::show() {
+  const LiveCount live = live_ ? live_->count() : LiveCount{};
   if (!first_ || !options_.progress) return;
   const fem::PressRow& r = run_.row();
+  const std::string stage = live_ ? fmt::format("{}, {:.3g} steps of elements", r.stage, double(live.steps)) : r.stage;
   const double wall = std::chrono::duration<double>(Clock::now() - start_).count();
-  options_.progress({r.stage, r.time / run_.end(), r.time, r.temperature, r.pressure, r.density.mean,
+  options_.progress({stage, r.time / run_.end(), r.time, r.temperature, r.pressure, r.density.mean,
                      (r.steps - started_steps_) / wall, wall * (run_.end() - r.time) / (r.time - started_at_)});
 }
 
 template <int dim>
-fem::PressRow Case<dim>::run() {
+PressSummary Case<dim>::run() {
   if (options_.mode == dem::Continue::resume)
     resume();
   else
@@ -166,12 +172,12 @@ fem::PressRow Case<dim>::run() {
     if (first_) dem::write_atomically(options_.folder / "history.csv", {history_}, dem::Durability::kill);
   }
   write_checkpoint();
-  return run_.row();
+  return {run_.row(), live_ ? std::optional(live_->count()) : std::nullopt};
 }
 
 }  // namespace
 
-fem::PressRow run_press(const PressScene& scene, const PressOptions& options, MPI_Comm comm) {
+PressSummary run_press(const PressScene& scene, const PressOptions& options, MPI_Comm comm) {
   const unsigned ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
   const int elements = fem::element_count(scene.size, scene.geometry == PressGeometry::axisymmetric ? 2 : 3);
   if (int(ranks) > elements)
@@ -186,7 +192,7 @@ fem::PressRow run_press(const PressScene& scene, const PressOptions& options, MP
     }
   refused = dealii::Utilities::MPI::broadcast(comm, refused, 0);
   if (!refused.empty()) throw InputError(refused);
-  const PressMaterial material = press_material(scene);
+  const PressMaterial material = press_material(scene, comm);
   if (scene.geometry == PressGeometry::axisymmetric) return Case<2>(scene, material, options, comm).run();
   return Case<3>(scene, material, options, comm).run();
 }

@@ -20,9 +20,15 @@ struct PressOptions {
   const std::atomic<bool>* stop = nullptr;             ///< ends the run with a checkpoint (Interrupted)
 };
 
+/// How a pressing ended.
+struct PressSummary {
+  fem::PressRow row;
+  std::optional<LiveCount> live;  ///< where volume elements live
+};
+
 /// Runs a scene to its end in a folder: scene.effective.toml, history.csv (a row a step), fields/ with a .pvd for
 /// ParaView, checkpoint.h5.  Collective.  Throws InputError, FileError, RunError (naming the last checkpoint) and
 /// Interrupted.
-fem::PressRow run_press(const PressScene&, const PressOptions&, MPI_Comm);
+PressSummary run_press(const PressScene&, const PressOptions&, MPI_Comm);
 
 }  // namespace densify::coupling

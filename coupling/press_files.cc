@@ -17,7 +17,19 @@ namespace densify::coupling {
 
 namespace {
 
-constexpr std::uint64_t format = 1;
+constexpr std::uint64_t format = 2;
+
+/// Numbers of living volume elements, but for their states.
+template <class Memory, class Visit>
+void visit_live_numbers(Memory& m, Visit visit) {
+  visit(m.largest_stress);
+  for (auto* x : {&m.count.elements, &m.count.steps, &m.count.solutions, &m.count.rounds, &m.count.bytes}) visit(*x);
+  for (auto* x : {&m.count.largest_mismatch, &m.count.power_mismatch, &m.count.dropped_stress}) visit(*x);
+}
+
+std::string element_name(std::size_t k) {
+  return fmt::format("elements/{:06d}", k);
+}
 
 /// Numbers of a row that a checkpoint keeps, in order.
 template <class Row, class Visit>
@@ -72,6 +84,11 @@ void write_press_checkpoint(const std::filesystem::path& path, const PressCheckp
                               double(c.row.rejected)};
   visit_numbers(c.row, [&](const double& x) { numbers.push_back(x); });
   file.list("numbers", numbers, "");
+  std::vector<double> live;
+  visit_live_numbers(c.live, [&](const auto& x) { live.push_back(double(x)); });
+  file.list("live", live, "");
+  for (std::size_t k = 0; k < c.live.images.size(); ++k)
+    file.list(element_name(k), std::vector<std::uint8_t>(c.live.images[k].begin(), c.live.images[k].end()), "");
   file.commit(dem::Durability::power_loss);
 }
 
@@ -97,6 +114,13 @@ PressCheckpoint read_press_checkpoint(const std::filesystem::path& path) {
     *x = numbers.at(k++);
   for (int* x : {&c.row.steps, &c.row.iterations, &c.row.rejected}) *x = int(numbers.at(k++));
   visit_numbers(c.row, [&](double& x) { x = numbers.at(k++); });
+  const std::vector<double> live = file.read<double>("live");
+  k = 0;
+  visit_live_numbers(c.live, [&]<class T>(T& x) { x = T(live.at(k++)); });
+  for (std::size_t e = 0; file.has(element_name(e)); ++e) {
+    const auto bytes = file.read<std::uint8_t>(element_name(e));
+    c.live.images.emplace_back(bytes.begin(), bytes.end());
+  }
   return c;
 }
 

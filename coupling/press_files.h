@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/live_material.h"
 #include "fem/press/press_run.h"
 
 namespace densify::coupling {
@@ -20,8 +21,9 @@ struct PressCheckpoint {
   fem::PressRow row;
   double next, step, step_before, height_at_ejection;
   std::vector<double> rate, rate_before;
-  double fields_at;    ///< when fields were written last [s]
-  std::string fields;  ///< lines of the .pvd
+  double fields_at;      ///< when fields were written last [s]
+  std::string fields;    ///< lines of the .pvd
+  LiveMemory live = {};  ///< of the volume elements, where they live
 };
 
 void write_press_checkpoint(const std::filesystem::path&, const PressCheckpoint&);

@@ -1,5 +1,7 @@
 #include "coupling/press_material.h"
 
+#include <cmath>
+
 #include "base/check.h"
 #include "coupling/table_law.h"
 #include "fem/press/viscous_solid.h"
@@ -15,9 +17,20 @@ void require_same_material(const PressScene& scene, const ResponseTable& table) 
                      scene.element->materials[0].name + "; make one with densify tabulate");
 }
 
+PressMaterial live(const PressScene& scene, MPI_Comm comm) {
+  const int dim = scene.geometry == PressGeometry::axisymmetric ? 2 : 3;
+  const auto elements = std::size_t(fem::element_count(scene.size, dim));
+  const auto points = std::size_t(std::lround(std::pow(scene.settings.degree + 1, dim)));
+  const auto material = std::make_shared<LiveMaterial>(*scene.element, scene.live, elements, points, comm);
+  double stiffest = 0;
+  for (const dem::Material& m : scene.element->materials)
+    stiffest = std::max(stiffest, m.youngs_modulus(scene.schedule->temperature(0)));
+  return {material, stiffest, material->mean_density(), material};
+}
+
 }  // namespace
 
-PressMaterial press_material(const PressScene& scene) {
+PressMaterial press_material(const PressScene& scene, MPI_Comm comm) {
   switch (scene.coupling) {
     case Coupling::closed_form:
       break;
@@ -25,13 +38,13 @@ PressMaterial press_material(const PressScene& scene) {
       const ResponseTable table = read_table(scene.table);
       require_same_material(scene, table);
       return {std::make_shared<fem::ViscousSolid>(std::make_shared<TableLaw>(table, scene.clamp)),
-              table.youngs_modulus(scene.schedule->temperature(0))};
+              table.youngs_modulus(scene.schedule->temperature(0)), scene.density};
     }
     case Coupling::live:
-      throw InputError("press.coupling: \"live\" is not there yet; take \"closed_form\"");
+      return live(scene, comm);
   }
   return {std::make_shared<fem::ViscousSolid>(std::make_shared<fem::SkorohodOlevsky>(scene.material)),
-          scene.material.youngs_modulus};
+          scene.material.youngs_modulus, scene.density};
 }
 
 }  // namespace densify::coupling

@@ -18,8 +18,12 @@ void read_size(Section& press, PressScene& scene) {
   press.quantity("height", scene.size.height, dim::length, Range::positive(), Need::required,
                  "of the powder before loading");
   scene.size.radius = scene.press.die_radius = 0.5 * diameter;
-  press.quantity("relative_density", scene.density, dim::none, Range::inside(0.1, 1), Need::required,
-                 "of the powder before loading");
+  scene.density = not_set;
+  press.quantity("relative_density", scene.density, dim::none, Range::inside(0.1, 1),
+                 scene.coupling == Coupling::live ? Need::optional : Need::required,
+                 "of the powder before loading; live volume elements have their own");
+  if (scene.coupling == Coupling::live && press.has("relative_density") && !press.documenting())
+    press.fail("relative_density", "the volume elements have their own, at process.start_pressure; remove it");
   press.choice("geometry", scene.geometry,
                {{"axisymmetric", PressGeometry::axisymmetric}, {"quarter", PressGeometry::quarter}}, Need::optional,
                "a body of revolution, or a quarter of it in three dimensions");
@@ -101,17 +105,25 @@ void visit(Section root, PressScene& scene) {
     scene.schedule = read_schedule(process);
   });
   root.section("press", Need::required, "a specimen in a die, by finite elements", [&](Section& press) {
-    read_size(press, scene);
     press.choice("coupling", scene.coupling,
                  {{"closed_form", Coupling::closed_form}, {"table", Coupling::table}, {"live", Coupling::live}},
                  Need::optional,
                  "what the material is: [press.material], [press.table], or a volume element [rve] in every element");
+    read_size(press, scene);
     const auto need = [&](Coupling c) { return scene.coupling == c ? Need::required : Need::optional; };
     press.section("die", Need::defaulted, "rigid and round", [&](Section& die) { read_die(die, scene); });
     press.section("material", need(Coupling::closed_form), "Skorohod and Olevsky's porous solid",
                   [&](Section& material) { read_material(material, scene); });
     press.section("table", need(Coupling::table), "responses of volume elements",
                   [&](Section& table) { read_table(table, scene); });
+    press.section("live", Need::defaulted, "volume elements", [&](Section& live) {
+      live.choice("seeds", scene.live.seeds, {{"one", ElementSeeds::one}, {"each", ElementSeeds::each}}, Need::optional,
+                  "one packing in all elements, or each its own, with seeds counted up from rve.specimen.packing.seed");
+      live.quantity(
+          "tolerance", scene.live.tolerance, dim::none, Range::between(1e-5, 0.1), Need::optional,
+          "stress of a volume element off that of its affine law, over the largest stress so far, above which "
+          "a step is solved again");
+    });
     press.section("steps", Need::defaulted, "of time", [&](Section& steps) {
       steps.quantity("accuracy", scene.control.accuracy, dim::none, Range::inside(0, 0.1), Need::optional,
                      "numerical error that the relative density may have at the end");
@@ -125,6 +137,10 @@ void visit(Section root, PressScene& scene) {
                [&](Section& element) { scene.element = dem::read_element(element, *process_place, *scene.schedule); });
   root.section("tabulate", Need::optional, "how densify tabulate makes a table of the volume element",
                [&](Section& tabulate) { read_tabulate(tabulate, scene.table_settings); });
+  if (scene.coupling == Coupling::live && !root.documenting() && !(scene.schedule->pressure(0) > 0))
+    process_place->fail("start_pressure",
+                        "live volume elements need one above 0, to which their powder is pressed before: loose "
+                        "particles answer with no stress");
   root.section("output", Need::defaulted, "what is written", [&](Section& output) {
     output.quantity("field_interval", scene.field_interval, dim::time, Range::non_negative(), Need::optional,
                     "of the process, between fields for ParaView; 0: only at the ends of stages");
@@ -146,6 +162,7 @@ PressScene read(SceneDocument document) {
   document.reject_unknown();
   if (scene.press.ejection_time > 0 && scene.schedule->pressure(scene.schedule->end()) > 0)
     scene.warnings.push_back("the process ends under pressure: the punch lets go at once when ejection begins");
+  if (scene.coupling == Coupling::live) scene.control.order = 1;
   scene.effective_text = document.effective_text();
   return scene;
 }

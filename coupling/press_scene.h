@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/schedule.h"
+#include "coupling/live_material.h"
 #include "coupling/tabulate.h"
 #include "dem/io/scene.h"
 #include "fem/press/porous_law.h"
@@ -29,7 +30,7 @@ struct PressScene {
   std::optional<Schedule> schedule;
   PressGeometry geometry = PressGeometry::axisymmetric;
   fem::CylinderSize size{};
-  double density = 0;  ///< relative, before loading
+  double density = 0;  ///< relative, before loading; NaN: that of the volume elements
   fem::PressSettings settings;
   fem::Press press{};
   fem::StepControl control;
@@ -39,8 +40,9 @@ struct PressScene {
   TableSettings table_settings;       ///< for densify tabulate
   bool clamp = false;                 ///< beyond the ends of the table its last values stand
   std::optional<dem::Scene> element;  ///< the volume element, where the scene has one
-  double field_interval = 0;          ///< of the process [s]; 0: only ends of stages
-  double checkpoint_interval = 60;    ///< of the clock on the wall [s]
+  LiveSettings live;
+  double field_interval = 0;        ///< of the process [s]; 0: only ends of stages
+  double checkpoint_interval = 60;  ///< of the clock on the wall [s]
   std::vector<std::string> warnings;
   std::string effective_text;  ///< all values in use; read again it is the same scene
 };

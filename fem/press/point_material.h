@@ -14,6 +14,7 @@ struct PointStep {
   double step;                ///< [s]
   double temperature_before;  ///< [K]
   double temperature;         ///< at the end [K]
+  double volume = 1;          ///< of the body at the point, before the step [m^3]
 };
 
 struct PointAnswer {
@@ -34,8 +35,8 @@ class PointMaterial {
   /// Numbers of state at a point.
   virtual std::size_t state_size() const = 0;
 
-  /// The state of a stress-free point.  `density` relative.
-  virtual void begin(double density, std::span<double> state) const = 0;
+  /// The states of the points at the start, free of stress where the material knows no other.  `density` relative.
+  virtual void begin(double density, std::span<double> states) const = 0;
 
   /// Relative density of a state.
   virtual double density(std::span<const double> state) const = 0;
@@ -51,6 +52,20 @@ class PointMaterial {
 
   /// Why the material does not hold for the state of a point at a temperature [K], a sentence; empty where it does.
   virtual std::string outside(std::span<const double> /*state*/, double /*temperature*/) const { return {}; }
+
+  /// True when answers are those of affine laws that stand over a solution of the body, made by begin_step() and
+  /// settle().
+  virtual bool affine() const { return false; }
+  /// Before the first update() of a step that is tried from the accepted state, with a guess of it.  Collective.
+  /// Throws StepRefused on all ranks.
+  virtual void begin_step(std::span<const PointStep> /*guess*/) {}
+  /// The body balances with these steps.  False: the laws have changed, it is to be balanced again.  Collective.
+  /// Throws StepRefused on all ranks.
+  virtual bool settle(std::span<const PointStep>) { return true; }
+  /// The step tried last stands.
+  virtual void accept() {}
+  /// ln(density) of a step below which differences mean nothing: what laws that stand loosely leave open.  Collective.
+  virtual double resolution() const { return 0; }
 };
 
 }  // namespace densify::fem

@@ -28,7 +28,7 @@ double sum(double value, MPI_Comm comm) {
 }  // namespace
 
 template <int dim>
-PressBody<dim>::PressBody(const CylinderSize& size, std::shared_ptr<const PointMaterial> material, double density,
+PressBody<dim>::PressBody(const CylinderSize& size, std::shared_ptr<PointMaterial> material, double density,
                           double temperature, const PressSettings& settings, MPI_Comm comm)
     : comm_(comm),
       settings_(settings),
@@ -119,10 +119,11 @@ void PressBody<dim>::make_points(double density) {
   area_ = sum(std::accumulate(weight_.begin(), weight_.end(), 0.0), comm_) / height_;
   motion_.resize(weight_.size());
   for (PointMotion& m : motion_) m.before = m.after = Mat3::Identity();
+  step_.resize(weight_.size());
   answer_.resize(weight_.size());
   const std::size_t n = material_->state_size();
   state_.resize(n * weight_.size());
-  for (std::size_t k = 0; k < weight_.size(); ++k) material_->begin(density, std::span(state_).subspan(n * k, n));
+  material_->begin(density, state_);
   tried_state_ = state_;
   friction_.assign(wall_points, Vec3::Zero());
   tried_friction_ = friction_;
@@ -144,10 +145,14 @@ PressOutcome PressBody<dim>::try_step(const PressLoad& load) {
 
   closed_ = accepted_closed_;
   solver_.forget();  // so that a step is the same after a checkpoint
+  if (material_->affine()) {
+    agreed([&] { strain_points(load, tried_); });
+    material_->begin_step(step_);
+  }
   PressOutcome outcome;
   for (outcome.rounds = 1;; ++outcome.rounds) {
     balance(load, constraints, outcome);
-    if (revise_contact() == 0) break;
+    if (revise_contact() == 0 && material_->settle(step_)) break;
     if (outcome.rounds == most_rounds) throw StepRefused("which points touch the wall is not settled");
   }
   require_inside();
@@ -162,6 +167,18 @@ void PressBody<dim>::require_inside() const {
     found = material_->outside(std::span(tried_state_).subspan(n * k, n), tried_temperature_);
   if (sum(found.empty() ? 0 : 1, comm_) > 0)
     throw RunError(found.empty() ? "a point of another rank leaves what the material holds for" : found);
+}
+
+template <int dim>
+void PressBody<dim>::agreed(const std::function<void()>& work) const {
+  std::string refused;
+  try {
+    work();
+  } catch (const StepRefused& error) {
+    refused = error.what();
+  }
+  if (sum(refused.empty() ? 0 : 1, comm_) > 0)
+    throw StepRefused(refused.empty() ? "a point of another rank refuses the step" : refused);
 }
 
 template <int dim>
@@ -254,15 +271,7 @@ int PressBody<dim>::revise_contact() {
 template <int dim>
 double PressBody<dim>::assemble(const PressLoad& load, const dealii::AffineConstraints<double>& constraints,
                                 PressOutcome& outcome) {
-  // A point that refuses the step refuses it for all ranks.
-  std::string refused;
-  try {
-    move_points(load, tried_);
-  } catch (const StepRefused& error) {
-    refused = error.what();
-  }
-  if (sum(refused.empty() ? 0 : 1, comm_) > 0)
-    throw StepRefused(refused.empty() ? "a point of another rank refuses the step" : refused);
+  agreed([&] { move_points(load, tried_); });
   matrix_ = 0;
   residual_ = 0;
   double within = 0;
@@ -295,6 +304,7 @@ double PressBody<dim>::assemble(const PressLoad& load, const dealii::AffineConst
 
 template <int dim>
 void PressBody<dim>::accept() {
+  material_->accept();
   for (PointMotion& m : motion_) {
     m.turned = turned_after(m);
     m.before = m.after;

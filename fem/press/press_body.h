@@ -82,7 +82,7 @@ struct Densities {
 template <int dim>
 class PressBody {
  public:
-  PressBody(const CylinderSize&, std::shared_ptr<const PointMaterial>, double density, double temperature,
+  PressBody(const CylinderSize&, std::shared_ptr<PointMaterial>, double density, double temperature,
             const PressSettings&, MPI_Comm);
 
   /// Tries a step from the accepted state.  Throws StepRefused when no solution is found, RunError where the solution
@@ -95,6 +95,7 @@ class PressBody {
   Densities densities() const;  ///< of the accepted state
   /// ln(density after/before) of every owned point of the step that was tried.
   std::vector<double> densification() const;
+  double resolution() const { return material_->resolution(); }   ///< PointMaterial's; collective
   std::vector<PointRecord> points() const;                        ///< owned ones, of the step that was accepted last
   const std::vector<double>& weights() const { return weight_; }  ///< unloaded volumes of owned points [m^3]
   PressState state() const;                                       ///< the accepted one, on every rank; collective
@@ -121,8 +122,12 @@ class PressBody {
 
   void make_constraints();
   void make_points(double density);
-  /// Every owned point after the step; the material answers for all at once.
+  /// Every owned point after the step.
+  void strain_points(const PressLoad&, const dealii::Vector<double>& tried);
+  /// The same, and the material answers for all at once.
   void move_points(const PressLoad&, const dealii::Vector<double>& tried);
+  /// What a point of one rank refuses is refused by all; `work` throws StepRefused.
+  void agreed(const std::function<void()>& work) const;
   /// Forces of the points as moved; sums of forces on the punches; forces within the elements, squared.
   void visit_elements(PressForces&, double& within, const Sink&);
   void visit_wall(const PressLoad&, const dealii::Vector<double>& tried, PressOutcome&, const Sink&);
@@ -141,7 +146,7 @@ class PressBody {
 
   const MPI_Comm comm_;
   const PressSettings settings_;
-  const std::shared_ptr<const PointMaterial> material_;
+  const std::shared_ptr<PointMaterial> material_;
   const double radius_, height_;  // of the unloaded body [m]
   double area_ = 0;               // of its section, as the mesh has it [m^2]
   dealii::parallel::shared::Triangulation<dim> mesh_;
@@ -161,6 +166,7 @@ class PressBody {
   dealii::Vector<double> displacement_, before_, tried_;  // [m]; before_: one accepted step earlier
   std::vector<double> weight_;                            // unloaded volume of an owned point [m^3]
   std::vector<PointMotion> motion_;                       // of an owned point over the step that is tried
+  std::vector<PointStep> step_;
   std::vector<PointAnswer> answer_;
   std::vector<double> state_, tried_state_;
   std::vector<Vec3> friction_, tried_friction_;  // of an owned point of the wall [Pa]

@@ -62,12 +62,11 @@ const auto element_needs =
 }  // namespace
 
 template <int dim>
-void PressBody<dim>::move_points(const PressLoad& load, const dealii::Vector<double>& tried) {
+void PressBody<dim>::strain_points(const PressLoad& load, const dealii::Vector<double>& tried) {
   dealii::FEValues<dim> values(mapping_, element_, points_of_cell_, element_needs);
   const unsigned n = element_.dofs_per_cell, points = points_of_cell_.size();
   Dofs dofs(n);
   Eigen::VectorXd u(n), volume(points);
-  std::vector<PointStep> steps(weight_.size());
   std::size_t first = 0;
   for (const auto& cell : dofs_.active_cell_iterators()) {
     if (!cell->is_locally_owned()) continue;
@@ -87,11 +86,17 @@ void PressBody<dim>::move_points(const PressLoad& load, const dealii::Vector<dou
       PointMotion& m = motion_[first + q];
       m.volume_after = few[q];
       if (!(m.volume_after > 0)) throw StepRefused("an element has lost its volume at a point");
-      steps[first + q] = {step_strain(m), load.step, temperature_, load.temperature};
+      step_[first + q] = {step_strain(m), load.step, temperature_, load.temperature,
+                          weight_[first + q] * m.volume_before};
     }
     first += points;
   }
-  material_->update(steps, state_, tried_state_, answer_);
+}
+
+template <int dim>
+void PressBody<dim>::move_points(const PressLoad& load, const dealii::Vector<double>& tried) {
+  strain_points(load, tried);
+  material_->update(step_, state_, tried_state_, answer_);
 }
 
 template <int dim>

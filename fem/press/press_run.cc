@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/check.h"
 #include "fem/press/gathered.h"
@@ -54,10 +55,11 @@ double PressRun<dim>::error_of(double step, const std::vector<double>& rate) con
   // Nothing to compare with: the square of its densification, of the order of its own error.
   if (step_ == 0) return mean(rate, [&](std::size_t, double r) { return std::pow(r * step, 2); });
   const double slope_step = 0.5 * (step_ + step_before_);
-  const double ahead = step_before_ > 0 ? 0.5 * (step + step_) / slope_step : 0;
-  const double share = step_before_ > 0 ? 1.0 / 12 : 0.5;
+  const bool carried_on = control_.order == 2 && step_before_ > 0;
+  const double ahead = carried_on ? 0.5 * (step + step_) / slope_step : 0;
+  const double share = carried_on ? 1.0 / 12 : 0.5;
   return std::sqrt(mean(rate, [&](std::size_t k, double r) {
-    const double expected = rate_[k] + (step_before_ > 0 ? ahead * (rate_[k] - rate_before_[k]) : 0);
+    const double expected = rate_[k] + (carried_on ? ahead * (rate_[k] - rate_before_[k]) : 0);
     return std::pow((r - expected) * step * share, 2);
   }));
 }
@@ -99,6 +101,7 @@ const PressRow& PressRun<dim>::advance() {
   if (ejection && height_at_ejection_ == 0) height_at_ejection_ = row_.height;
   if (next_ == 0) next_ = first_share * length;
   next_ = std::min(next_, ejection ? length / ejection_steps : largest_share * length);
+  double last_error = std::numeric_limits<double>::infinity();
   for (;;) {
     double step = next_;
     const double left = stage_end - row_.time;
@@ -119,7 +122,8 @@ const PressRow& PressRun<dim>::advance() {
       for (double& r : rate) r /= step;
       error = error_of(step, rate);
       const double densification = mean(rate, [&](std::size_t, double r) { return std::abs(r * step); });
-      allowed = control_.accuracy * (densification / densification_scale + idle_share * step / end_);
+      allowed =
+          control_.accuracy * (densification / densification_scale + idle_share * step / end_) + body_.resolution();
     } catch (const StepRefused& refused) {
       ++row_.rejected;
       next_ = 0.4 * step;
@@ -129,9 +133,12 @@ const PressRow& PressRun<dim>::advance() {
       continue;
     }
     row_.iterations += outcome.iterations;
-    const double order = step_before_ > 0 ? 3 : 2;
+    const double order = control_.order == 2 && step_before_ > 0 ? 3 : 2;
     const double factor = error > 0 ? 0.85 * std::pow(allowed / error, 1 / order) : 2;
-    if (error > allowed && step > least_share * length) {
+    // Particles that snap move at once however short the step is.
+    const bool snapped = error > 0.9 * last_error;
+    last_error = error;
+    if (error > allowed && step > least_share * length && !snapped) {
       ++row_.rejected;
       next_ = step * std::clamp(factor, 0.2, 0.8);
       continue;

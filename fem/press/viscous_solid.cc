@@ -233,9 +233,9 @@ bool PointUpdate::iterate(bool slides) {
 
 }  // namespace
 
-void ViscousSolid::begin(double density, std::span<double> state) const {
-  std::fill(state.begin(), state.end(), 0.0);
-  state[6] = density;  // no necks: state[7] is 0
+void ViscousSolid::begin(double density, std::span<double> states) const {
+  std::fill(states.begin(), states.end(), 0.0);  // no necks: states[7] is 0
+  for (std::size_t k = 6; k < states.size(); k += 8) states[k] = density;
 }
 
 double ViscousSolid::solid_volume(std::span<const double> state, double temperature_at_start,

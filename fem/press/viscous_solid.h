@@ -20,7 +20,7 @@ class ViscousSolid : public PointMaterial {
   explicit ViscousSolid(std::shared_ptr<const PorousLaw> law) : law_(std::move(law)) {}
 
   std::size_t state_size() const override { return 8; }
-  void begin(double density, std::span<double> state) const override;
+  void begin(double density, std::span<double> states) const override;
   double density(std::span<const double> state) const override { return state[6]; }
   double solid_volume(std::span<const double> state, double temperature_at_start, double temperature) const override;
   void update(std::span<const PointStep>, std::span<const double> before, std::span<double> after,

@@ -102,11 +102,21 @@ TEST(PressScene, HoldsAVolumeElement) {
 }
 
 TEST(PressScene, MistakesOfACoupling) {
-  expect_says(mistake({"press.coupling=live"}), {"rve", "missing"});
+  expect_says(mistake({"press.coupling=live"}), {"press.relative_density", "remove"});
+  expect_says(mistake({"press.coupling=live", "press.relative_density="}), {"rve", "missing"});
   expect_says(mistake({"press.coupling=table"}), {"press.table", "missing"});
   const std::string both = good + std::string(element);
   expect_says(mistake({"rve.specimen.shape=free"}, both), {"rve.specimen"});
+  expect_says(mistake({"press.coupling=live", "press.relative_density="}, both), {"start_pressure", "above 0"});
   expect_says(mistake({"rve.contact.elastisity=hertz"}, both), {"rve.contact.elastisity", "elasticity"});
+}
+
+TEST(PressScene, LiveElementsHaveTheirDensity) {
+  const PressScene s = read_press_scene(DENSIFY_EXAMPLES "/press_nial_live", {});
+  EXPECT_EQ(s.coupling, Coupling::live);
+  EXPECT_TRUE(std::isnan(s.density));
+  EXPECT_EQ(s.control.order, 1);
+  EXPECT_EQ(read_press_scene_text(s.effective_text, {}).effective_text, s.effective_text);
 }
 
 TEST(PressScene, AFrictionAboveOneIsWarnedOf) {
