@@ -7,9 +7,14 @@
 namespace densify::dem {
 namespace {
 
-void read_reference_temperature(Section& table, Scene& scene) {
+/// What the particles are made of, and where they stand.
+void read_particles(Section& table, Scene& scene, ScenePlaces& places) {
   table.quantity("reference_temperature", scene.reference_temperature, dim::temperature, Range::positive(),
                  Need::optional, "at which sizes and densities are given");
+  read_materials(table, scene, places);
+  read_interfaces(table, scene, places);
+  read_powder(table, scene, places);
+  read_specimen(table, scene, places);
 }
 
 void visit(Section root, Scene& scene, ScenePlaces& places) {
@@ -18,11 +23,7 @@ void visit(Section root, Scene& scene, ScenePlaces& places) {
       "realisations", scene.realisations, 1, 100000, Need::optional,
       "runs side by side, one a core: seeds of the packing counted up, or with specimen.perturbation its seeds; "
       "the history is their mean");
-  read_reference_temperature(root, scene);
-  read_materials(root, scene, places);
-  read_interfaces(root, scene, places);
-  read_powder(root, scene, places);
-  read_specimen(root, scene, places);
+  read_particles(root, scene, places);
   read_walls(root, scene, places);
   read_contact(root, scene, places);
   read_process(root, scene, places);
@@ -85,11 +86,7 @@ Scene read_element(Section& element, const Section& process, const Schedule& sch
   ScenePlaces places;
   scene.schedule = schedule;
   places.process = process;
-  read_reference_temperature(element, scene);
-  read_materials(element, scene, places);
-  read_interfaces(element, scene, places);
-  read_powder(element, scene, places);
-  read_specimen(element, scene, places);
+  read_particles(element, scene, places);
   read_contact(element, scene, places);
   read_integration(element, scene, places);
   read_guards(element, scene);
