@@ -24,7 +24,7 @@ void print_summary(const coupling::PressScene& scene, const coupling::PressSumma
   fmt::print("\nrelative density {:.4f} +- {:.4f} numerical, from {:.4f} to {:.4f} in the body\n", r.density.mean,
              r.density_error, r.density.least, r.density.most);
   fmt::print("height {:.4f} mm, mean diameter {:.4f} mm, punch travel {:.4f} mm\n", 1e3 * r.height, 2e3 * radius,
-             1e3 * (scene.size.height - r.height));
+             1e3 * r.travel);
   fmt::print(
       "work of punch and die {:.4g} J = {:.4g} J dissipated in the body + {:.4g} J by friction at the wall "
       "{:+.4g} J on thermal strains {:+.4g} J stored, off by {:.2g} %\n",
@@ -55,6 +55,8 @@ void print_check(const coupling::PressScene& scene) {
              scene.settings.degree, plane ? "a body of revolution" : "a quarter in three dimensions");
   fmt::print("process                         {:.4g} s in {} stages, then {:.4g} s of ejection\n",
              scene.schedule->end(), scene.schedule->stages().size(), scene.press.ejection_time);
+  if (scene.settings.punches == fem::Punches::both)
+    fmt::print("punches                         both come into the die\n");
   for (const auto& w : scene.warnings) fmt::print("warning: {}\n", w);
   fmt::print("the scene is valid\n");
 }

@@ -72,7 +72,7 @@ void Case<dim>::begin() {
     dem::write_atomically(options_.folder / "scene.effective.toml", {scene_.effective_text}, dem::Durability::kill);
   }
   MPI_Barrier(comm_);
-  history_ = press_history_header() + press_history_row(run_.row(), scene_.size);
+  history_ = press_history_header() + press_history_row(run_.row());
   write_fields();
   write_checkpoint();  // from here on it can be resumed
 }
@@ -84,15 +84,15 @@ void Case<dim>::resume() {
     throw InputError("--resume: the scene is not the one of the checkpoint in " + options_.folder.string() +
                      "; only [output] may change");
   body_.restore(c.body);
-  run_.restore({c.row, c.next, c.step, c.step_before, c.height_at_ejection, c.rate, c.rate_before});
+  run_.restore(c.run);
   if (live_) live_->restore(c.live);
   fields_ = c.fields;
   fields_at_ = c.fields_at;
-  started_at_ = c.row.time, started_steps_ = c.row.steps;
+  started_at_ = c.run.row.time, started_steps_ = c.run.row.steps;
   // Rows up to the checkpoint; steps count them.
   std::istringstream rows(dem::read_whole_file(options_.folder / "history.csv"));
   std::string line;
-  for (int k = 0; k < c.row.steps + 2; ++k) {
+  for (int k = 0; k < c.run.row.steps + 2; ++k) {
     if (!std::getline(rows, line))
       throw InputError(fmt::format("{}: has lost rows that the checkpoint counts; start the run anew in another folder",
                                    (options_.folder / "history.csv").string()));
@@ -111,18 +111,7 @@ void Case<dim>::write_fields() {
 
 template <int dim>
 void Case<dim>::write_checkpoint() {
-  const auto memory = run_.memory();
-  const PressCheckpoint c{without_output(scene_.effective_text),
-                          body_.state(),
-                          memory.row,
-                          memory.next,
-                          memory.step,
-                          memory.step_before,
-                          memory.height_at_ejection,
-                          memory.rate,
-                          memory.rate_before,
-                          fields_at_,
-                          fields_,
+  const PressCheckpoint c{without_output(scene_.effective_text), body_.state(), run_.memory(), fields_at_, fields_,
                           live_ ? live_->memory() : LiveMemory{}};
   if (!first_) return;
   dem::write_atomically(options_.folder / "history.csv", {history_}, dem::Durability::kill);
@@ -157,7 +146,7 @@ PressSummary Case<dim>::run() {
           fmt::format("{}; last good state: {}", error.what(), (options_.folder / "checkpoint.h5").string()));
     }
     const fem::PressRow& row = run_.row();
-    history_ += press_history_row(row, scene_.size);
+    history_ += press_history_row(row);
     const bool due = scene_.field_interval > 0 && row.time >= fields_at_ + scene_.field_interval;
     if (due || row.stage != stage || run_.done()) write_fields();
     show();

@@ -17,7 +17,7 @@ namespace densify::coupling {
 
 namespace {
 
-constexpr std::uint64_t format = 2;
+constexpr std::uint64_t format = 3;
 
 /// Numbers of living volume elements, but for their states.
 template <class Memory, class Visit>
@@ -34,9 +34,26 @@ std::string element_name(std::size_t k) {
 /// Numbers of a row that a checkpoint keeps, in order.
 template <class Row, class Visit>
 void visit_numbers(Row& r, Visit visit) {
-  for (auto* x : {&r.time, &r.temperature, &r.pressure, &r.density.mean, &r.density.least, &r.density.most,
-                  &r.density_error, &r.height, &r.volume, &r.forces.punch, &r.forces.bottom, &r.forces.wall_pressure,
-                  &r.forces.wall_friction, &r.stored, &r.dissipated, &r.thermal, &r.slid, &r.work, &r.step})
+  for (auto* x : {&r.time,
+                  &r.temperature,
+                  &r.pressure,
+                  &r.density.mean,
+                  &r.density.least,
+                  &r.density.most,
+                  &r.density_error,
+                  &r.height,
+                  &r.travel,
+                  &r.volume,
+                  &r.forces.punch,
+                  &r.forces.bottom,
+                  &r.forces.wall_pressure,
+                  &r.forces.wall_friction,
+                  &r.stored,
+                  &r.dissipated,
+                  &r.thermal,
+                  &r.slid,
+                  &r.work,
+                  &r.step})
     visit(*x);
 }
 
@@ -49,11 +66,11 @@ std::string press_history_header() {
          "newton_iterations,rejected\n";
 }
 
-std::string press_history_row(const fem::PressRow& r, const fem::CylinderSize& size) {
+std::string press_history_row(const fem::PressRow& r) {
   return fmt::format(
       "{},{},{},{},{},{:.6g},{},{},{},{},{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{},{},{}\n", r.time,
       r.stage, r.temperature, r.pressure, r.density.mean, r.density_error, r.density.least, r.density.most, r.height,
-      std::sqrt(r.volume / (std::numbers::pi * r.height)), size.height - r.height, r.forces.punch, r.forces.bottom,
+      std::sqrt(r.volume / (std::numbers::pi * r.height)), r.travel, r.forces.punch, r.forces.bottom,
       r.forces.wall_pressure, r.forces.wall_friction, r.stored, r.dissipated, r.thermal, r.slid, r.work, r.step,
       r.steps, r.iterations, r.rejected);
 }
@@ -62,27 +79,30 @@ void write_press_checkpoint(const std::filesystem::path& path, const PressCheckp
   dem::Hdf5Writer file(path);
   file.attribute("/", "format", format);
   file.text("scene", c.scene);
-  file.text("stage", c.row.stage);
+  file.text("stage", c.run.row.stage);
   file.text("fields", c.fields);
   file.list("displacement", c.body.displacement, "m");
   file.list("before", c.body.before, "m");
   file.list("points", c.body.points, "");
   file.list("wall", c.body.wall, "");
-  file.list("rate", c.rate, "1/s");
-  file.list("rate_before", c.rate_before, "1/s");
+  file.list("rate", c.run.rate, "1/s");
+  file.list("rate_before", c.run.rate_before, "1/s");
   std::vector<double> numbers{c.body.temperature,
                               c.body.last_step,
                               c.body.largest_scale,
                               c.body.shear,
-                              c.next,
-                              c.step,
-                              c.step_before,
-                              c.height_at_ejection,
+                              c.body.punch_closed,
+                              c.run.next,
+                              c.run.step,
+                              c.run.step_before,
+                              c.run.height_at_ejection,
+                              c.run.stage_travel,
+                              c.run.stage_pressure,
                               c.fields_at,
-                              double(c.row.steps),
-                              double(c.row.iterations),
-                              double(c.row.rejected)};
-  visit_numbers(c.row, [&](const double& x) { numbers.push_back(x); });
+                              double(c.run.row.steps),
+                              double(c.run.row.iterations),
+                              double(c.run.row.rejected)};
+  visit_numbers(c.run.row, [&](const double& x) { numbers.push_back(x); });
   file.list("numbers", numbers, "");
   std::vector<double> live;
   visit_live_numbers(c.live, [&](const auto& x) { live.push_back(double(x)); });
@@ -99,21 +119,22 @@ PressCheckpoint read_press_checkpoint(const std::filesystem::path& path) {
         fmt::format("{}: is of another version of this program; start the run anew in another folder", path.string()));
   PressCheckpoint c;
   c.scene = file.text("scene");
-  c.row.stage = file.text("stage");
+  c.run.row.stage = file.text("stage");
   c.fields = file.text("fields");
   c.body.displacement = file.read<double>("displacement");
   c.body.before = file.read<double>("before");
   c.body.points = file.read<double>("points");
   c.body.wall = file.read<double>("wall");
-  c.rate = file.read<double>("rate");
-  c.rate_before = file.read<double>("rate_before");
+  c.run.rate = file.read<double>("rate");
+  c.run.rate_before = file.read<double>("rate_before");
   const std::vector<double> numbers = file.read<double>("numbers");
   std::size_t k = 0;
-  for (double* x : {&c.body.temperature, &c.body.last_step, &c.body.largest_scale, &c.body.shear, &c.next, &c.step,
-                    &c.step_before, &c.height_at_ejection, &c.fields_at})
+  for (double* x : {&c.body.temperature, &c.body.last_step, &c.body.largest_scale, &c.body.shear, &c.body.punch_closed,
+                    &c.run.next, &c.run.step, &c.run.step_before, &c.run.height_at_ejection, &c.run.stage_travel,
+                    &c.run.stage_pressure, &c.fields_at})
     *x = numbers.at(k++);
-  for (int* x : {&c.row.steps, &c.row.iterations, &c.row.rejected}) *x = int(numbers.at(k++));
-  visit_numbers(c.row, [&](double& x) { x = numbers.at(k++); });
+  for (int* x : {&c.run.row.steps, &c.run.row.iterations, &c.run.row.rejected}) *x = int(numbers.at(k++));
+  visit_numbers(c.run.row, [&](double& x) { x = numbers.at(k++); });
   const std::vector<double> live = file.read<double>("live");
   k = 0;
   visit_live_numbers(c.live, [&]<class T>(T& x) { x = T(live.at(k++)); });

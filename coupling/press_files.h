@@ -12,15 +12,13 @@ namespace densify::coupling {
 
 /// Columns of history.csv and one row of it.
 std::string press_history_header();
-std::string press_history_row(const fem::PressRow&, const fem::CylinderSize&);
+std::string press_history_row(const fem::PressRow&);
 
 /// What is needed to go on, for a body of either dimension.
 struct PressCheckpoint {
   std::string scene;  ///< effective text, without [output]
   fem::PressState body;
-  fem::PressRow row;
-  double next, step, step_before, height_at_ejection;
-  std::vector<double> rate, rate_before;
+  fem::PressMemory run;
   double fields_at;      ///< when fields were written last [s]
   std::string fields;    ///< lines of the .pvd
   LiveMemory live = {};  ///< of the volume elements, where they live

@@ -1,5 +1,8 @@
 #include "coupling/press_scene.h"
 
+#include <fmt/core.h>
+
+#include <cmath>
 #include <limits>
 
 #include "base/scene_document.h"
@@ -24,6 +27,8 @@ void read_size(Section& press, PressScene& scene) {
                  "of the powder before loading; live volume elements have their own");
   if (scene.coupling == Coupling::live && press.has("relative_density") && !press.documenting())
     press.fail("relative_density", "the volume elements have their own, at process.start_pressure; remove it");
+  press.choice("action", scene.settings.punches, {{"single", fem::Punches::upper}, {"double", fem::Punches::both}},
+               Need::optional, "the upper punch alone comes into the die, or both alike");
   press.choice("geometry", scene.geometry,
                {{"axisymmetric", PressGeometry::axisymmetric}, {"quarter", PressGeometry::quarter}}, Need::optional,
                "a body of revolution, or a quarter of it in three dimensions");
@@ -97,12 +102,57 @@ void read_tabulate(Section& tabulate, TableSettings& s) {
       tabulate.fail("pressure_factors", "the numbers do not grow; sort them");
 }
 
+/// The process, and its stages as the scene has them.
+std::vector<Section> read_process(Section& process, PressScene& scene) {
+  std::vector<Section> stages;
+  double travel = not_set;
+  scene.schedule = read_schedule(process, [&](Section& stage, double, double pressure) {
+    double given = not_set;
+    stage.quantity("punch_travel", given, dim::length, Range::non_negative(), Need::optional,
+                   "how far the punches have come together since the start, at the end of the stage: drives it in "
+                   "place of pressure, as those after it until one has a pressure");
+    if (!stage.documenting() && !std::isnan(given) && !std::isnan(pressure))
+      stage.fail("punch_travel", "and pressure both drive the punches; remove one of them");
+    if (!std::isnan(given) || !std::isnan(pressure)) travel = given;
+    scene.press.travel.push_back(travel);
+    stages.push_back(stage);
+  });
+  return stages;
+}
+
+/// What the punches are to do against what there is to press.
+void check_punches(const Section& process, const std::vector<Section>& stages, const Section& die,
+                   const PressScene& scene) {
+  const auto& travel = scene.press.travel;
+  const double solid = std::isnan(scene.density) ? 0 : scene.density * scene.size.height;
+  bool any = false;
+  for (std::size_t k = 0; k < travel.size(); ++k) {
+    any = any || !std::isnan(travel[k]);
+    if (travel[k] > scene.size.height - solid)
+      stages[k].fail("punch_travel", fmt::format("leaves less room than the solid takes up, {:.4g} mm of a height of "
+                                                 "{:.4g} mm; give a shorter one",
+                                                 1e3 * solid, 1e3 * scene.size.height));
+  }
+  const bool loaded = scene.schedule->pressure(0) > 0;
+  if (!std::isnan(travel.front()) && loaded && scene.coupling != Coupling::live)
+    process.fail("start_pressure",
+                 "and the punch_travel of the first stage both drive the punches; remove one of them");
+  if (any && scene.element && scene.coupling != Coupling::live)
+    process.fail("stage", "has punch_travel, and [rve] is tabulated along pressures; give pressures, or remove [rve]");
+  const bool held = !std::isnan(travel.back()) || scene.schedule->pressure(scene.schedule->end()) > 0;
+  if (scene.press.ejection_time > 0 && held)
+    die.fail("ejection_time",
+             "a part that leaves its die has no punch pressure on it, and the process ends with the "
+             "punches held; end it with a stage that has pressure = \"0 MPa\"");
+}
+
 void visit(Section root, PressScene& scene) {
   root.text("title", scene.title, Need::optional, "a line for results and reports");
-  std::optional<Section> process_place;
+  std::optional<Section> process_place, die_place;
+  std::vector<Section> stage_places;
   root.section("process", Need::required, "temperature and pressure over time", [&](Section& process) {
     process_place = process;
-    scene.schedule = read_schedule(process);
+    stage_places = read_process(process, scene);
   });
   root.section("press", Need::required, "a specimen in a die, by finite elements", [&](Section& press) {
     press.choice("coupling", scene.coupling,
@@ -111,7 +161,10 @@ void visit(Section root, PressScene& scene) {
                  "what the material is: [press.material], [press.table], or a volume element [rve] in every element");
     read_size(press, scene);
     const auto need = [&](Coupling c) { return scene.coupling == c ? Need::required : Need::optional; };
-    press.section("die", Need::defaulted, "rigid and round", [&](Section& die) { read_die(die, scene); });
+    press.section("die", Need::defaulted, "rigid and round", [&](Section& die) {
+      die_place = die;
+      read_die(die, scene);
+    });
     press.section("material", need(Coupling::closed_form), "Skorohod and Olevsky's porous solid",
                   [&](Section& material) { read_material(material, scene); });
     press.section("table", need(Coupling::table), "responses of volume elements",
@@ -137,6 +190,7 @@ void visit(Section root, PressScene& scene) {
                [&](Section& element) { scene.element = dem::read_element(element, *process_place, *scene.schedule); });
   root.section("tabulate", Need::optional, "how densify tabulate makes a table of the volume element",
                [&](Section& tabulate) { read_tabulate(tabulate, scene.table_settings); });
+  if (!root.documenting()) check_punches(*process_place, stage_places, *die_place, scene);
   if (scene.coupling == Coupling::live && !root.documenting() && !(scene.schedule->pressure(0) > 0))
     process_place->fail("start_pressure",
                         "live volume elements need one above 0, to which their powder is pressed before: loose "
@@ -160,8 +214,6 @@ PressScene read(SceneDocument document) {
     throw InputError(missing.what() + missing.misspelling(all.declared_keys()));
   }
   document.reject_unknown();
-  if (scene.press.ejection_time > 0 && scene.schedule->pressure(scene.schedule->end()) > 0)
-    scene.warnings.push_back("the process ends under pressure: the punch lets go at once when ejection begins");
   if (scene.coupling == Coupling::live) scene.control.order = 1;
   scene.effective_text = document.effective_text();
   return scene;

@@ -75,27 +75,30 @@ void PressBody<dim>::make_constraints() {
   punch_.assign(dofs_.n_dofs(), 0);
   for (const auto d : top_) punch_[d] = 1;
   for (const auto d : bottom_) punch_[d] = 2;
-  const auto fix = [&](AffineConstraints<double>& c) {
-    for (const auto d : bottom_) c.add_line(d);
+  const auto guide = [&](AffineConstraints<double>& c) {
     for (int side = 0; side < dim - 1; ++side) {
       ComponentMask mask(dim, false);
       mask.set(unsigned(side), true);
       for (const auto d : sorted(mask, side == 0 ? symmetry_x : symmetry_y)) c.add_line(d);
     }
   };
-  fix(pressed_);
-  for (const auto d : top_)
-    if (d != top_.front()) {
-      pressed_.add_line(d);
-      pressed_.add_entry(d, top_.front(), 1.0);
-    }
-  fix(driven_);
+  const auto follow = [&](AffineConstraints<double>& c, const Dofs& all, double share) {
+    for (const auto d : all)
+      if (d != top_.front()) {
+        c.add_line(d);
+        c.add_entry(d, top_.front(), share);
+      }
+  };
+  for (auto* c : {&pressed_, &both_, &driven_}) guide(*c);
+  for (const auto d : bottom_) pressed_.add_line(d), driven_.add_line(d);
   for (const auto d : top_) driven_.add_line(d);
-  pressed_.close();
-  driven_.close();
+  follow(pressed_, top_, 1);
+  follow(both_, top_, 1);
+  follow(both_, bottom_, -1);
+  for (auto* c : {&pressed_, &both_, &driven_}) c->close();
 
   DynamicSparsityPattern pattern(dofs_.n_dofs());
-  DoFTools::make_sparsity_pattern(dofs_, pattern, pressed_, true);
+  DoFTools::make_sparsity_pattern(dofs_, pattern, settings_.punches == Punches::both ? both_ : pressed_, true);
   const IndexSet& owned = dofs_.locally_owned_dofs();
   SparsityTools::distribute_sparsity_pattern(pattern, owned, comm_, DoFTools::extract_locally_relevant_dofs(dofs_));
   matrix_.reinit(owned, owned, pattern, comm_);
@@ -134,16 +137,17 @@ void PressBody<dim>::make_points(double density) {
 
 template <int dim>
 PressOutcome PressBody<dim>::try_step(const PressLoad& load) {
-  const auto& constraints = load.pressure ? pressed_ : driven_;
+  const auto& pressed = load.moving == Punches::both ? both_ : pressed_;
   tried_temperature_ = load.temperature;
   tried_step_ = load.step;
   tried_ = displacement_;
   if (last_step_ > 0)  // as the last step went on
     tried_.sadd(1 + load.step / last_step_, -load.step / last_step_, before_);
-  if (!load.pressure)
-    for (const auto d : top_) tried_[d] = -load.punch_travel;
-
+  if (load.moving == Punches::upper)
+    for (const auto d : bottom_) tried_[d] = displacement_[d];
   closed_ = accepted_closed_;
+  punch_closed_ = load.pressure || accepted_punch_closed_;
+  if (driven(load)) place_punches(load);
   solver_.forget();  // so that a step is the same after a checkpoint
   if (material_->affine()) {
     agreed([&] { strain_points(load, tried_); });
@@ -151,12 +155,32 @@ PressOutcome PressBody<dim>::try_step(const PressLoad& load) {
   }
   PressOutcome outcome;
   for (outcome.rounds = 1;; ++outcome.rounds) {
-    balance(load, constraints, outcome);
-    if (revise_contact() == 0 && material_->settle(step_)) break;
+    balance(load, driven(load) ? driven_ : pressed, outcome);
+    const bool punch_revised = revise_punch(load, outcome.forces);
+    if (revise_contact() == 0 && !punch_revised && material_->settle(step_)) break;
     if (outcome.rounds == most_rounds) throw StepRefused("which points touch the wall is not settled");
   }
   require_inside();
   return outcome;
+}
+
+template <int dim>
+void PressBody<dim>::place_punches(const PressLoad& load) {
+  const double lower = load.moving == Punches::both ? 0.5 * load.punch_travel : displacement_[bottom_.front()];
+  for (const auto d : bottom_) tried_[d] = lower;
+  for (const auto d : top_) tried_[d] = lower - load.punch_travel;
+}
+
+template <int dim>
+bool PressBody<dim>::revise_punch(const PressLoad& load, const PressForces& forces) {
+  if (load.pressure) return false;
+  const double little = 10 * settings_.tolerance * std::max(tried_scale_, largest_scale_);
+  const double travel = tried_[bottom_.front()] - tried_[top_.front()];
+  const bool touches = punch_closed_ ? forces.punch >= -little : travel < load.punch_travel - 1e-12 * height_;
+  if (touches == punch_closed_) return false;
+  punch_closed_ = touches;
+  if (touches) place_punches(load);
+  return true;
 }
 
 template <int dim>
@@ -189,7 +213,7 @@ void PressBody<dim>::balance(const PressLoad& load, const dealii::AffineConstrai
     scale = assemble(load, constraints, outcome);
   } catch (const StepRefused&) {
     // A guess that no point can follow: begin from rest instead.
-    if (outcome.rounds > 1 || last_step_ == 0 || !load.pressure) throw;
+    if (outcome.rounds > 1 || last_step_ == 0 || driven(load)) throw;
     tried_ = displacement_;
     scale = assemble(load, constraints, outcome);
   }
@@ -290,7 +314,7 @@ double PressBody<dim>::assemble(const PressLoad& load, const dealii::AffineConst
   }
   if (load.pressure && dealii::Utilities::MPI::this_mpi_process(comm_) == 0) {
     dealii::Vector<double> force(1);
-    force[0] = *load.pressure * area_;
+    force[0] = *load.pressure * area_ * (load.moving == Punches::both ? 2 : 1);
     constraints.distribute_local_to_global(force, Dofs{top_.front()}, residual_);
   }
   matrix_.compress(dealii::VectorOperation::add);
@@ -315,6 +339,7 @@ void PressBody<dim>::accept() {
   state_ = tried_state_;
   friction_ = tried_friction_;
   accepted_closed_ = closed_;
+  accepted_punch_closed_ = punch_closed_;
   largest_scale_ = std::max(largest_scale_, tried_scale_);
   temperature_ = tried_temperature_;
   last_step_ = tried_step_;

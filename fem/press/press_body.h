@@ -23,24 +23,28 @@
 
 namespace densify::fem {
 
+/// Which punches come into the die: one against the other, which stands with the die, or both alike (double action).
+enum class Punches { upper, both };
+
 struct PressSettings {
   int degree = 2;             ///< of the displacements; volume changes have the degree less one (element by element)
   double wall_stiffness = 0;  ///< DieWall::stiffness [Pa/m]
   double friction = 0;        ///< Coulomb's, between body and die
   double tolerance = 3e-8;    ///< of the balance of forces, relative to those within the elements
   int most_iterations = 40;   ///< of Newton's method
+  Punches punches = Punches::upper;
 };
 
 /// What is outside the body at the end of a step.
 struct PressLoad {
-  double step;         ///< [s]
-  double temperature;  ///< of the body, uniform [K]
-  double die_radius;   ///< [m]
-  double die_top;      ///< height of the die's upper end over the lower punch [m]
-  std::optional<double>
-      pressure;             ///< of the upper punch on the section of the unloaded body, positive [Pa]; without it
-  double punch_travel = 0;  ///< how far the upper punch has come down [m]
-  double die_rise = 0;      ///< how far the die moves up during the step [m]
+  double step;                      ///< [s]
+  double temperature;               ///< of the body, uniform [K]
+  double die_radius;                ///< [m]
+  double die_top;                   ///< height of the die's upper end over the lower punch [m]
+  std::optional<double> pressure;   ///< of the punches on the section of the unloaded body, positive [Pa]; without it
+  double punch_travel = 0;          ///< how far the punches have come together since the start [m]
+  double die_rise = 0;              ///< how far the die moves up during the step [m]
+  Punches moving = Punches::upper;  ///< as in the settings, or the upper one alone (ejection)
 };
 
 /// Forces at the end of a step, of the whole cylinder [N].
@@ -77,8 +81,9 @@ struct Densities {
 /// dim = 2: a body of revolution; 3: a quarter of one.  Everything is found from the displacement since the mesh was
 /// made, so that volumes and mass are exact.  Displacements are of Q_degree, the volume ratio is the L2 projection of
 /// det F to P_(degree-1) of each element, which does not lock where the body is nearly incompressible (Q2/P1: inf-sup
-/// stable). The punches are plane and without friction and stay on the body; a pressure that has gone to zero holds
-/// nothing.
+/// stable). The punches are plane and without friction.  One that is pressed stays on the body, and holds nothing when
+/// its pressure has gone to zero; one that is driven by travel lets go where it would pull.  The frame is that of the
+/// die, as long as the lower punch or neither moves.
 template <int dim>
 class PressBody {
  public:
@@ -103,9 +108,13 @@ class PressBody {
   void restore(const PressState&);
   unsigned points_of_element() const { return unsigned(points_of_cell_.size()); }
   MPI_Comm comm() const { return comm_; }
-  double mass() const;    ///< volume of the solid as it was unstressed at the start [m^3]
-  double volume() const;  ///< of the body [m^3]
-  double height() const;  ///< [m]
+  double mass() const;                                ///< volume of the solid as it was unstressed at the start [m^3]
+  double volume() const;                              ///< of the body [m^3]
+  double height() const;                              ///< [m]
+  double unloaded_height() const { return height_; }  ///< [m]
+  double section() const { return area_; }            ///< of the unloaded body, as the mesh has it [m^2]
+  double lower_rise() const;                          ///< of the lower punch in the die, since the start [m]
+  Punches punches() const { return settings_.punches; }
   const dealii::Vector<double>& displacement() const { return displacement_; }
   const dealii::DoFHandler<dim>& dofs() const { return dofs_; }
   const dealii::Mapping<dim>& mapping() const { return mapping_; }
@@ -139,6 +148,11 @@ class PressBody {
   /// Chosen anew, or only made softer; whether it changed.
   bool choose_shear(const PressOutcome&, bool anew);
   void require_inside() const;
+  /// The punches hold the body at a travel.
+  bool driven(const PressLoad& load) const { return !load.pressure && punch_closed_; }
+  void place_punches(const PressLoad&);
+  /// A driven punch lets go where it pulls, and meets a body that has come up to it; whether one did.
+  bool revise_punch(const PressLoad&, const PressForces&);
   double deepest() const;  ///< of the closed points inside the wall, on all ranks [m]
   /// Opens points that the wall pulls, closes those that are inside it; how many, on all ranks.
   int revise_contact();
@@ -155,9 +169,9 @@ class PressBody {
   const dealii::QGauss<dim> points_of_cell_;
   const dealii::QGauss<dim - 1> points_of_face_;
   dealii::DoFHandler<dim> dofs_;
-  dealii::AffineConstraints<double> pressed_, driven_;  // upper punch by pressure, by travel
-  Dofs top_, bottom_;                                   // axial ones; all of the top follow the first
-  std::vector<char> punch_;                             // of each: 1 top, 2 bottom, 0 else
+  dealii::AffineConstraints<double> pressed_, both_, driven_;  // upper punch by pressure, both, held at a travel
+  Dofs top_, bottom_;                                          // axial ones; all of the top follow the first
+  std::vector<char> punch_;                                    // of each: 1 top, 2 bottom, 0 else
   dealii::PETScWrappers::MPI::SparseMatrix matrix_;
   dealii::PETScWrappers::MPI::Vector residual_, change_;
   LinearSolver solver_;
@@ -169,12 +183,13 @@ class PressBody {
   std::vector<PointStep> step_;
   std::vector<PointAnswer> answer_;
   std::vector<double> state_, tried_state_;
-  std::vector<Vec3> friction_, tried_friction_;  // of an owned point of the wall [Pa]
-  double largest_scale_ = 0, tried_scale_ = 0;   // of forces within the elements so far [N]
-  double shear_ = 0;                             // DieWall::shear of this step [Pa/m]
-  std::vector<char> closed_, accepted_closed_;   // it touches the wall
-  std::vector<char> covered_;                    // it is below the die's upper end
-  std::vector<double> depth_;                    // inside the wall [m]
+  std::vector<Vec3> friction_, tried_friction_;              // of an owned point of the wall [Pa]
+  double largest_scale_ = 0, tried_scale_ = 0;               // of forces within the elements so far [N]
+  double shear_ = 0;                                         // DieWall::shear of this step [Pa/m]
+  std::vector<char> closed_, accepted_closed_;               // it touches the wall
+  std::vector<char> covered_;                                // it is below the die's upper end
+  std::vector<double> depth_;                                // inside the wall [m]
+  bool punch_closed_ = true, accepted_punch_closed_ = true;  // a driven punch touches the body
 };
 
 extern template class PressBody<2>;

@@ -179,7 +179,7 @@ void PressBody<dim>::visit_wall(const PressLoad& load, const dealii::Vector<doub
         tried_friction_[point] = t.friction;
         depth_[point] = t.depth;
         outcome.largest_slip = std::max(outcome.largest_slip, t.slip);
-        covered_[point] = after[2] <= load.die_top;
+        covered_[point] = after[2] <= load.die_top + tried[bottom_.front()];
         if (!closed_[point++]) continue;
         const double w = values.JxW(q) * around<dim>(x[0]);
         const Vec3 normal = Vec3(after[0], after[1], 0).normalized();

@@ -96,7 +96,12 @@ double PressBody<dim>::volume() const {
 
 template <int dim>
 double PressBody<dim>::height() const {
-  return height_ + displacement_[top_.front()];
+  return height_ + displacement_[top_.front()] - displacement_[bottom_.front()];
+}
+
+template <int dim>
+double PressBody<dim>::lower_rise() const {
+  return displacement_[bottom_.front()];
 }
 
 template class PressBody<2>;

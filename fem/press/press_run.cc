@@ -28,7 +28,8 @@ PressRun<dim>::PressRun(PressBody<dim>& body, const Schedule& schedule, const Pr
       press_(press),
       control_(control),
       end_(schedule.end() + press.ejection_time),
-      start_temperature_(schedule.temperature(0)) {
+      start_temperature_(schedule.temperature(0)),
+      stage_pressure_(schedule.pressure(0)) {
   row_.stage = schedule.stages().front().name;
   row_.temperature = start_temperature_;
   row_.density = body.densities();
@@ -37,15 +38,30 @@ PressRun<dim>::PressRun(PressBody<dim>& body, const Schedule& schedule, const Pr
 }
 
 template <int dim>
+double PressRun<dim>::die_radius(double time) const {
+  return press_.die_radius * (1 + press_.die_expansion * (schedule_.temperature(time) - start_temperature_));
+}
+
+template <int dim>
 PressLoad PressRun<dim>::load_at(double time, double step) const {
-  const double temperature = schedule_.temperature(time);
-  PressLoad load{step, temperature, press_.die_radius * (1 + press_.die_expansion * (temperature - start_temperature_)),
-                 std::numeric_limits<double>::infinity(), schedule_.pressure(time)};
+  PressLoad load{step, schedule_.temperature(time), die_radius(time), std::numeric_limits<double>::infinity(),
+                 schedule_.pressure(time)};
+  load.moving = body_.punches();
+  const std::size_t stage = schedule_.stage_at(row_.time);
+  const double end = schedule_.stage_end(stage), duration = schedule_.stages()[stage].duration;
+  const double share = time < end ? 1 - (end - time) / duration : 1;
+  if (by_travel(stage)) {
+    load.pressure.reset();
+    load.punch_travel = stage_travel_ + share * (press_.travel[stage] - stage_travel_);
+  } else if (stage > 0 && by_travel(stage - 1)) {  // the scheduled one has not been there
+    load.pressure = stage_pressure_ + share * (schedule_.stages()[stage].end_pressure - stage_pressure_);
+  }
   if (time > schedule_.end()) {  // the die goes down by the height of the body and a tenth
     const double way = 1.1 * height_at_ejection_;
     load.die_top = 1.05 * height_at_ejection_ - way * (time - schedule_.end()) / press_.ejection_time;
     load.die_rise = -way * step / press_.ejection_time;
     load.pressure = 0;
+    load.moving = Punches::upper;
   }
   return load;
 }
@@ -74,20 +90,23 @@ double PressRun<dim>::mean(const std::vector<double>& values,
 }
 
 template <int dim>
-typename PressRun<dim>::Memory PressRun<dim>::memory() const {
+PressMemory PressRun<dim>::memory() const {
   return {row_,
           next_,
           step_,
           step_before_,
           height_at_ejection_,
+          stage_travel_,
+          stage_pressure_,
           gathered(rate_, body_.comm()),
           gathered(rate_before_, body_.comm())};
 }
 
 template <int dim>
-void PressRun<dim>::restore(const Memory& m) {
+void PressRun<dim>::restore(const PressMemory& m) {
   row_ = m.row;
   next_ = m.next, step_ = m.step, step_before_ = m.step_before, height_at_ejection_ = m.height_at_ejection;
+  stage_travel_ = m.stage_travel, stage_pressure_ = m.stage_pressure;
   rate_ = own_part(m.rate, body_.weights().size(), body_.comm());
   rate_before_ = own_part(m.rate_before, body_.weights().size(), body_.comm());
 }
@@ -113,11 +132,12 @@ const PressRow& PressRun<dim>::advance() {
     if (step < control_.smallest_step * end_)
       throw RunError("the body takes no step of " + std::to_string(step) + " s at " + std::to_string(row_.time) +
                      " s: " + row_.stage);
+    const PressLoad load = load_at(time, step);
     PressOutcome outcome;
     double error = 0, allowed = 0;
     std::vector<double> rate;
     try {
-      outcome = body_.try_step(load_at(time, step));
+      outcome = body_.try_step(load);
       rate = body_.densification();
       for (double& r : rate) r /= step;
       error = error_of(step, rate);
@@ -143,24 +163,24 @@ const PressRow& PressRun<dim>::advance() {
       next_ = step * std::clamp(factor, 0.2, 0.8);
       continue;
     }
-    const double height = row_.height;
+    const double height = row_.height, lower = body_.lower_rise();
     body_.accept();
     row_.time = time;
     row_.temperature = schedule_.temperature(std::min(time, schedule_.end()));
-    row_.pressure = ejection ? 0 : schedule_.pressure(time);
+    row_.pressure = load.pressure ? *load.pressure : outcome.forces.punch / body_.section();
     row_.density = body_.densities();
     row_.density_error += error * row_.density.mean;
     row_.height = body_.height();
+    row_.travel = load.pressure ? body_.unloaded_height() - row_.height : load.punch_travel;
     row_.volume = body_.volume();
     row_.forces = outcome.forces;
     row_.stored = outcome.stored;
     row_.dissipated += outcome.dissipated;
     row_.thermal += outcome.thermal;
     row_.slid += outcome.slid;
-    const PressLoad load = load_at(time, step);
-    const double die_growth = load.die_radius - load_at(time - step, step).die_radius;
-    row_.work += outcome.forces.punch * (height - row_.height) - outcome.forces.wall_pressure * die_growth +
-                 outcome.forces.wall_friction * load.die_rise;
+    const double die_growth = load.die_radius - die_radius(time - step), rise = body_.lower_rise() - lower;
+    row_.work += outcome.forces.punch * (height - row_.height - rise) + outcome.forces.bottom * rise -
+                 outcome.forces.wall_pressure * die_growth + outcome.forces.wall_friction * load.die_rise;
     row_.step = step;
     ++row_.steps;
     next_ = std::max(next_, step) * std::clamp(factor, 0.3, 1.6);
@@ -168,6 +188,7 @@ const PressRow& PressRun<dim>::advance() {
     if (time >= stage_end) {  // what comes may be another law: begin anew
       step_ = step_before_ = 0;
       next_ = 0;
+      stage_travel_ = row_.travel, stage_pressure_ = std::max(row_.pressure, 0.0);
       row_.stage = time >= end_              ? row_.stage
                    : time >= schedule_.end() ? "ejection"
                                              : schedule_.stages()[schedule_.stage_at(time)].name;

@@ -1,6 +1,7 @@
 #pragma once
 // A whole pressing: the schedule's stages, then ejection, in steps that an error estimate chooses.
 
+#include <cmath>
 #include <functional>
 #include <string>
 
@@ -13,6 +14,9 @@ struct Press {
   double die_radius;         ///< of the bore at the start of the process [m]
   double die_expansion = 0;  ///< of the die [1/K]
   double ejection_time = 0;  ///< how long the die takes to leave the body after the process; 0: it stays [s]
+  /// How far the punches have come together since the start at the end of each stage that is driven by it; NaN: driven
+  /// by pressure, which goes on from the one that there is; empty: all of them are [m].
+  std::vector<double> travel = {};
 };
 
 struct StepControl {
@@ -26,10 +30,11 @@ struct PressRow {
   double time = 0;  ///< [s]
   std::string stage;
   double temperature = 0;  ///< [K]
-  double pressure = 0;     ///< of the schedule [Pa]
+  double pressure = 0;     ///< of the punches, on the unloaded section [Pa]
   Densities density{};
   double density_error = 0;                     ///< sum of the estimates of the steps
   double height = 0;                            ///< [m]
+  double travel = 0;                            ///< of the punches towards each other since the start [m]
   double volume = 0;                            ///< [m^3]
   PressForces forces;                           ///< [N]
   double stored = 0;                            ///< elastic energy [J]
@@ -39,6 +44,15 @@ struct PressRow {
   double work = 0;                              ///< of punch and die on the body, by now [J]
   double step = 0;                              ///< the last one [s]
   int steps = 0, iterations = 0, rejected = 0;  ///< by now
+};
+
+/// What the steps to come depend on besides the body.
+struct PressMemory {
+  PressRow row;
+  double next = 0, step = 0, step_before = 0;   ///< to try, and the last two [s]
+  double height_at_ejection = 0;                ///< [m]
+  double stage_travel = 0, stage_pressure = 0;  ///< that the stage began with [m], [Pa]
+  std::vector<double> rate, rate_before;        ///< of the points of all ranks [1/s]
 };
 
 /// Drives a body through a process.  A step's error is what its densification differs from that of the two steps before
@@ -58,17 +72,13 @@ class PressRun {
 
   const PressRow& row() const { return row_; }
 
-  /// What the steps to come depend on besides the body.
-  struct Memory {
-    PressRow row;
-    double next, step, step_before, height_at_ejection;
-    std::vector<double> rate, rate_before;  ///< of the points of all ranks
-  };
-  Memory memory() const;  ///< collective
-  void restore(const Memory&);
+  PressMemory memory() const;  ///< collective
+  void restore(const PressMemory&);
   double end() const { return end_; }
 
  private:
+  double die_radius(double time) const;
+  bool by_travel(std::size_t stage) const { return !press_.travel.empty() && !std::isnan(press_.travel[stage]); }
   PressLoad load_at(double time, double step) const;
   double error_of(double step, const std::vector<double>& rate) const;
   /// Of a function of values of the owned points, by unloaded volume; collective.
@@ -79,7 +89,7 @@ class PressRun {
   const Press press_;
   const StepControl control_;
   const double end_, start_temperature_;
-  double height_at_ejection_ = 0;
+  double height_at_ejection_ = 0, stage_travel_ = 0, stage_pressure_;
   PressRow row_;
   double next_ = 0;                         // step to try [s]
   std::vector<double> rate_, rate_before_;  // d ln(density)/dt of points in the last two steps [1/s]

@@ -39,6 +39,7 @@ PressState PressBody<dim>::state() const {
   s.last_step = last_step_;
   s.largest_scale = largest_scale_;
   s.shear = shear_;
+  s.punch_closed = accepted_punch_closed_;
   return s;
 }
 
@@ -79,6 +80,7 @@ void PressBody<dim>::restore(const PressState& s) {
   last_step_ = s.last_step;
   largest_scale_ = s.largest_scale;
   shear_ = s.shear;
+  accepted_punch_closed_ = s.punch_closed != 0;
 }
 
 template class PressBody<2>;

@@ -12,6 +12,7 @@ struct PressState {
   double temperature = 0;                    ///< [K]
   double last_step = 0;                      ///< [s]
   double largest_scale = 0, shear = 0;       ///< [N], [Pa/m]
+  double punch_closed = 1;                   ///< 1: a driven punch touches the body
 };
 
 }  // namespace densify::fem

@@ -75,6 +75,45 @@ TEST(PressScene, Mistakes) {
   expect_says(mistake({}, text), {"height", "heigth"});
 }
 
+// Stages are driven by the last that was given of pressure and punch_travel; action = "double" moves both punches.
+TEST(PressScene, PunchesByTravel) {
+  const std::string more = R"(
+[[process.stage]]
+name = "closing"
+duration = "10 min"
+punch_travel = "2 mm"
+[[process.stage]]
+name = "hold"
+duration = "10 min"
+[[process.stage]]
+name = "unloading"
+duration = "10 min"
+pressure = "0 MPa"
+)";
+  const PressScene s = read_press_scene_text(good + more, {"press.action=double", "press.die.ejection_time=60 s"});
+  EXPECT_EQ(s.settings.punches, fem::Punches::both);
+  ASSERT_EQ(s.press.travel.size(), 4u);
+  EXPECT_TRUE(std::isnan(s.press.travel[0]));
+  EXPECT_DOUBLE_EQ(s.press.travel[1], 2e-3);
+  EXPECT_DOUBLE_EQ(s.press.travel[2], 2e-3);
+  EXPECT_TRUE(std::isnan(s.press.travel[3]));
+  EXPECT_EQ(read_press_scene_text(s.effective_text, {}).effective_text, s.effective_text);
+}
+
+TEST(PressScene, MistakesOfPunches) {
+  const std::string travels =
+      std::string(good).substr(0, std::string(good).find("pressure =")) + "punch_travel = \"2 mm\"\n";
+  expect_says(mistake({"press.action=both"}), {"press.action", "single", "double"});
+  expect_says(mistake({}, good + std::string("punch_travel = \"2 mm\"\n")),
+              {"scene.toml:18", "punch_travel", "and pressure both drive", "remove one"});
+  std::string deep = travels;
+  deep.replace(deep.find("2 mm"), 4, "3 mm");
+  expect_says(mistake({}, deep), {"scene.toml:17", "punch_travel", "5.344 mm", "8 mm"});
+  expect_says(mistake({"process.start_pressure=1 MPa"}, travels), {"process.start_pressure", "punch_travel", "remove"});
+  expect_says(mistake({"press.die.ejection_time=60 s"}, travels), {"press.die.ejection_time", "0 MPa"});
+  expect_says(mistake({"press.die.ejection_time=60 s"}), {"press.die.ejection_time", "no punch pressure"});
+}
+
 // A volume element stands in the same scene, in its own table, and follows the process of the specimen.
 const char* const element = R"(
 [rve.materials.NiAl]
