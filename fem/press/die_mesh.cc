@@ -29,6 +29,8 @@ void mark_faces(dealii::Triangulation<dim>& mesh, const CylinderSize& size) {
         id = top;
       else if (std::abs(c[0]) < small)
         id = symmetry_x;
+      else if (dim == 2 && c[0] < size.bore + small)
+        id = hole;
       else if (dim == 3 && std::abs(c[1]) < small)
         id = symmetry_y;
       face->set_boundary_id(id);
@@ -43,8 +45,8 @@ int element_count(const CylinderSize& size, int dim) {
 
 template <>
 void make_cylinder(dealii::Triangulation<2>& mesh, const CylinderSize& size) {
-  dealii::GridGenerator::subdivided_hyper_rectangle(mesh, {unsigned(size.radial), unsigned(size.axial)},
-                                                    dealii::Point<2>(), {size.radius, size.height});
+  dealii::GridGenerator::subdivided_hyper_rectangle(mesh, {unsigned(size.radial), unsigned(size.axial)}, {size.bore, 0},
+                                                    {size.radius, size.height});
   mark_faces(mesh, size);
 }
 
