@@ -107,6 +107,10 @@ Simulation::Simulation(Setup setup)
     control_.peak_pressure = peak_load();
     if (const auto& sintering = setup_.contact.sintering) {
       control_.transition = sintering->relaxation_time;
+      constexpr double flow_steps = 4000;  // in a transition
+      if (stress_driven() && !setup_.contact.friction) control_.flow_step = control_.transition / flow_steps;
+      if (std::isnan(setup_.integration.smallest_step) && control_.flow_step > 0)
+        control_.smallest_step = std::min(control_.smallest_step, control_.flow_step);
       for (std::uint8_t a = 0; a < table_.materials(); ++a)
         for (std::uint8_t b = a; b < table_.materials(); ++b)
           control_.activation_temperatures.push_back(table_.interface(a, b).activation_temperature);

@@ -208,6 +208,7 @@ class Simulation {
   void equalise_punch();
   Column column() const;
   void weigh_cell(CellStiffness, double step);
+  double cell_share() const;
   CellStiffness equalised_cell_stiffness() const;
   double cell_leap() const;
   void drive_cell(LeapfrogSteps);

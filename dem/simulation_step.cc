@@ -46,7 +46,7 @@ StepLimit Simulation::step_limit() {
     StepLimit l =
         critical_step(state_.particles, state_.contacts, pairs, state_.cell, table_, setup_.contact, state_.walls,
                       punch, {state_.time, state_.last_step}, setup_.integration.rule, setup_.integration.threads);
-    if (stress_driven()) l.critical /= 1 + carriage_share;  // room for the cell's own motion
+    if (stress_driven()) l.critical /= 1 + cell_share();  // room for the cell's own motion
     return l;
   };
   if (!pass_.near().empty() && may_have_travelled_ < pass_.near().skin())
@@ -143,7 +143,10 @@ void Simulation::equalise_inertia() {
     calm(state_.particles, state_.last_step / stiffness_.next_step);
   const bool pressed = state_.punch.mass > 0;
   equalise(state_.particles, stiffness_, setup_.contact, table_, settings.step_safety,
-           pressed || stress_driven() ? carriage_share : 0.0, settings.threads);
+           pressed           ? carriage_share
+           : stress_driven() ? cell_share()
+                             : 0.0,
+           settings.threads);
   if (pressed) equalise_punch();
   if (stress_driven()) weigh_cell(equalised_cell_stiffness(), stiffness_.next_step);
   if (state_.steps % control_interval != 0) return;

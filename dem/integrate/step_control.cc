@@ -79,7 +79,7 @@ double controlled_step(const StepControl& control, const ControlState& state, do
 
 double schedule_limit(const StepControl& control, const Schedule& schedule, ProcessLoad load, double time, double step,
                       bool loose) {
-  constexpr double transition_steps = 60, share_of_pressure = 0.05, least_pressure = 0.002;
+  constexpr double transition_steps = 60, flow_share = 0.01, share_of_pressure = 0.05, least_pressure = 0.002;
   double limit = control.largest_step;
   const double rate = load.rate;
   if (rate > 0) {
@@ -87,10 +87,14 @@ double schedule_limit(const StepControl& control, const Schedule& schedule, Proc
     if (loose) limit = std::min(limit, control.peak_pressure / (control.load_steps * rate));
   }
   const double before = schedule.temperature(std::max(0.0, time - control.transition)),
-               soon = schedule.temperature(time + 2 * step);
-  for (const double activation : control.activation_temperatures)
+               soon = schedule.temperature(time + 2 * step),
+               nearly = schedule.temperature(std::max(0.0, time + 2 * step - (1 - flow_share) * control.transition));
+  for (const double activation : control.activation_temperatures) {
     if (control.transition > 0 && (before < activation) != (soon < activation))
       limit = std::min(limit, control.transition / transition_steps);
+    if (control.flow_step > 0 && before < activation && nearly >= activation)
+      limit = std::min(limit, control.flow_step);
+  }
   return std::max(limit, control.smallest_step);
 }
 

@@ -19,6 +19,7 @@ struct StepControl {
   double peak_pressure = 0;                     ///< of the process [Pa]
   double load_steps = 0;                        ///< that a load of the peak pressure takes while the powder is loose
   double transition = 0;                        ///< duration of activation and deactivation [s]
+  double flow_step = 0;                         ///< while necks begin to flow under a stress; 0: as any other [s]
   std::vector<double> activation_temperatures;  ///< of the pairs that sinter [K]
 
   static constexpr double unset_measure = std::numeric_limits<double>::quiet_NaN();
@@ -70,7 +71,8 @@ struct ProcessLoad {
 /// The longest step from a time on that does justice to the schedule [s].  What is loose rearranges by jumps, as many
 /// for each share of the load whatever the rate: load_steps for the peak pressure.  In any state the pressure changes
 /// by at most a twentieth of itself (down to 0.002 of its peak), and a transition of the contacts (4.47-4.54) takes
-/// some sixty steps.
+/// some sixty steps.  Viscosities fall from where nothing flows to where everything does within the last thousandths of
+/// an activation: there the step is at most flow_step.
 double schedule_limit(const StepControl&, const Schedule&, ProcessLoad, double time, double step, bool loose);
 
 }  // namespace densify::dem
