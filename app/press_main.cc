@@ -36,9 +36,10 @@ void print_summary(const coupling::PressScene& scene, const coupling::PressSumma
     fmt::print(
         "{} volume elements, {:.2f} MB each: {} steps, {} linear systems, in {} solutions of the body; stresses off "
         "their "
-        "laws by at most {:.2g} of the largest, power of contacts off by {:.2g}, shears that were dropped {:.2g}\n",
+        "laws by at most {:.2g} of the largest, work of contacts off that of stresses by {:.2g}, shears that were "
+        "dropped {:.2g}\n",
         live->elements, 1e-6 * double(live->bytes) / double(live->elements), live->steps, live->solutions, live->rounds,
-        live->largest_mismatch, live->power_mismatch, live->dropped_stress);
+        live->largest_mismatch, live->mismatch_work / std::max(live->contact_work, 1e-300), live->dropped_stress);
   fmt::print("warnings: {}\n", scene.warnings.empty() ? "none" : std::to_string(scene.warnings.size()));
   for (const auto& w : scene.warnings) fmt::print("  {}\n", w);
   fmt::print("\nresults in {}\n", folder.string());

@@ -77,8 +77,9 @@ void LiveMaterial::update(std::span<const fem::PointStep> steps, std::span<const
     const Vec6& strain = steps[k].strain;
     const double growth = growth_now_[e] / growth_start_[e], grown = growth / before[2 * k + 1];
     fem::PointAnswer& a = answers[k];
-    a.stress = law.stress + law.tangent * (strain - law.strain);
-    a.tangent = law.tangent;
+    const double share = law.carried.share;
+    a.stress = law.stress + law.tangent * (strain - law.strain + share * (strain - law.carried.strain));
+    a.tangent = (1 + share) * law.tangent;
     a.density = before[2 * k] * grown * std::exp(-strain.head<3>().sum());
     a.stored = 0;  // is part of what is called dissipated: an element does not tell them apart
     a.thermal = a.stress.head<3>().sum() * std::log(grown) / 3;
@@ -118,6 +119,7 @@ void LiveMaterial::begin_step(std::span<const fem::PointStep> guess) {
     const fem::PointStep& step = guess[points_ * e];
     growth_now_[e] = element.solid_growth(step.temperature);
     law_[e].strain = mean_strain(guess, e);
+    law_[e].carried = element.carried(element.time() + step.step);
     law_[e].stress = element.try_step(law_[e].strain, element.time() + step.step);
     law_[e].tangent = element.tangent();
   });
@@ -166,7 +168,8 @@ void LiveMaterial::accept() {
   own_.largest_mismatch = std::max(own_.largest_mismatch, tried_mismatch_);
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     elements_[e]->accept();
-    own_.power_mismatch = std::max(own_.power_mismatch, elements_[e]->power_mismatch());
+    own_.mismatch_work += elements_[e]->mismatch_work();
+    own_.contact_work += elements_[e]->contact_work();
     Vec6 stress = law_[e].stress;
     stress[axial_shear] = 0;
     if (largest_stress_ > 0)
@@ -187,7 +190,8 @@ LiveCount LiveMaterial::count() const {
   c.bytes = mpi::sum(c.bytes, comm_);
   c.rounds = before_.rounds + own_.rounds;
   c.largest_mismatch = std::max(before_.largest_mismatch, own_.largest_mismatch);
-  c.power_mismatch = std::max(before_.power_mismatch, mpi::max(own_.power_mismatch, comm_));
+  c.mismatch_work = before_.mismatch_work + mpi::sum(own_.mismatch_work, comm_);
+  c.contact_work = before_.contact_work + mpi::sum(own_.contact_work, comm_);
   c.dropped_stress = std::max(before_.dropped_stress, mpi::max(own_.dropped_stress, comm_));
   return c;
 }

@@ -24,7 +24,7 @@ struct LiveCount {
   std::uint64_t rounds = 0;                              ///< solutions of the finite elements, one a step at least
   std::uint64_t bytes = 0;
   double largest_mismatch = 0;  ///< of stresses with which a step was accepted, over the largest stress then
-  double power_mismatch = 0;    ///< largest LiveRve::power_mismatch of an accepted step
+  double mismatch_work = 0, contact_work = 0;  ///< sums of LiveRve's over accepted steps [J]
   double dropped_stress = 0;  ///< largest shear but rz, which a body of revolution cannot have, over the largest stress
 };
 
@@ -38,8 +38,10 @@ struct LiveMemory {
 /// Over one solution of the finite elements each volume element stands for an affine law sigma = sigma_0 + C (strain -
 /// strain_0), the same at all points of its finite element: that of its step with the strain foretold.  Then it makes
 /// the step with the mean strain of its points; where its stress is off the law's by more than the tolerance, it gives
-/// a new law and the finite elements are solved again.  Relative density is the volume of the solid at its temperature
-/// over that of the body.  State: relative density, growth of the solid's volume since the start.
+/// a new law and the finite elements are solved again.  The body's stress is that of the rate at the end of the step,
+/// as the mean rates of this step and of the one before foretell it (BDF2): sigma + share C (strain - carried strain).
+/// Relative density is the volume of the solid at its temperature over that of the body.  State: relative density,
+/// growth of the solid's volume since the start.
 class LiveMaterial : public fem::PointMaterial {
  public:
   /// For finite elements of so many points each, given to the ranks in their order, of `elements` in all.  Packs and
@@ -71,6 +73,7 @@ class LiveMaterial : public fem::PointMaterial {
   struct Law {
     Vec6 stress, strain;
     Mat6 tangent;
+    LiveRve::Carried carried;
   };
   Vec6 mean_strain(std::span<const fem::PointStep>, std::size_t own) const;
   /// Calls work(own) for the elements of this rank; a RunError of any of them refuses the step on all ranks.

@@ -20,12 +20,31 @@ void require_movable(const dem::Scene& scene) {
         "rve.contact.friction: a live volume element moves without inertia and rotations; remove the table");
 }
 
+/// What an `accuracy` stands for where an owner moves the cell: the error of a step, a skin that long steps do not
+/// leave, and masses that swing on stiff contacts within 2e-6 of the process, at any size: they hold what rearranges.
+void choose_live_settings(dem::Setup& setup) {
+  constexpr double step_share = 1.0 / 3, balance = 1e-2, skin = 1, swing = 2e-6;
+  dem::IntegrationSettings& s = setup.integration;
+  s.inertia_free.step_tolerance = step_share * s.accuracy;
+  s.inertia_free.force_tolerance = balance;
+  s.skin = skin;
+  double mass = 0, stiffness = 0;
+  for (std::size_t p = 0; p < setup.particles.size(); ++p) {
+    const dem::Material& m = setup.materials[setup.particles.material[p]];
+    const double r = setup.particles.reference_radius[p];
+    mass += m.density * 4.0 / 3 * M_PI * r * r * r;
+    stiffness += m.youngs_modulus(setup.schedule.temperature(0)) * r;
+  }
+  s.mass_scaling = stiffness * std::pow(swing * setup.schedule.end(), 2) / (s.inertia_free.mass_share * mass);
+}
+
 dem::Setup moved_by_an_owner(const dem::Scene& scene, const dem::GreenBody& body) {
   require_movable(scene);
   dem::Setup setup = dem::make_setup(scene, body, 1);
   setup.integration.method = dem::IntegrationMethod::inertia_free;
   setup.integration.inertia_free.from = dem::InertiaFreeFrom::start;
   setup.integration.inertia = dem::Inertia::uniform;
+  if (!std::isnan(setup.integration.accuracy)) choose_live_settings(setup);
   setup.cell_path.reset();
   setup.cell.velocity_gradient.setZero();
   return setup;
@@ -100,8 +119,17 @@ Mat6 LiveRve::tangent() {
 }
 
 void LiveRve::accept() {
+  const double before = accepted_.time;
   accepted_ = sim_.state();
+  rate_ = foretold_strain_ / foretold_step_;
+  step_ = accepted_.time < sim_.setup().schedule.next_breakpoint(before) ? foretold_step_ : 0;
   velocities_.resize(0);
+}
+
+LiveRve::Carried LiveRve::carried(double end) const {
+  if (step_ == 0 || accepted_.contacts.neck.empty()) return {};
+  const double step = end - accepted_.time;
+  return {step * rate_, step / (step + step_)};
 }
 
 double LiveRve::density() const {
@@ -127,12 +155,19 @@ double LiveRve::solid_growth(double temperature) const {
 std::string LiveRve::image() const {
   dem::Hdf5Writer file("volume element");
   dem::write_state(file, accepted_);
+  std::vector<double> motion(rate_.begin(), rate_.end());
+  motion.push_back(step_);
+  file.list("motion", motion, "");
   return file.image();
 }
 
 void LiveRve::restore(const std::string& image) {
   const dem::Hdf5Reader file("volume element", image);
   accepted_ = dem::read_state(file, sim_);
+  const auto motion = file.read<double>("motion");
+  if (motion.size() != 7) throw FileError("volume element: 7 numbers of its motion are needed");
+  rate_ = Eigen::Map<const Vec6>(motion.data());
+  step_ = motion[6];
   velocities_.resize(0);
 }
 

@@ -28,12 +28,22 @@ class LiveRve {
   /// The step tried last stands.
   void accept();
 
+  /// The strain that the rate of the accepted step before makes until `end`, and how much further from it the rate at
+  /// `end` is than that of the step: h/(h + h_before).  No share where a stage has begun and while grains are loose:
+  /// they answer to strains, not to rates.
+  struct Carried {
+    Vec6 strain = Vec6::Zero();
+    double share = 0;
+  };
+  Carried carried(double end) const;
+
   double time() const { return accepted_.time; }  ///< [s]
   double density() const;                         ///< of the accepted state: volume of the solid over that of the cell
   /// Volume of the solid at a temperature [K] over that at the reference temperature.
   double solid_growth(double temperature) const;
-  /// dem::CellAnswer::power_mismatch of the step just tried.
-  double power_mismatch() const { return answer_.power_mismatch; }
+  /// Of the step just tried: dem::CellAnswer's power and mismatch over its length [J].
+  double contact_work() const { return answer_.power * foretold_step_; }
+  double mismatch_work() const { return answer_.mismatch * foretold_step_; }
 
   /// The accepted state, bit for bit, and back.  Throws FileError for bytes that are not one of this element.
   std::string image() const;
@@ -47,6 +57,8 @@ class LiveRve {
   dem::Simulation sim_;
   dem::State accepted_;
   dem::CellAnswer answer_;
+  Vec6 rate_ = Vec6::Zero();  // of strain in the accepted step before [1/s]
+  double step_ = 0;           // its length; 0: a stage has begun [s]
   // What foretells the motion of another strain over the same step; of none when empty.
   double foretold_end_ = 0, foretold_step_ = 0;
   Vec6 foretold_strain_;

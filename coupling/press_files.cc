@@ -17,14 +17,15 @@ namespace densify::coupling {
 
 namespace {
 
-constexpr std::uint64_t format = 3;
+constexpr std::uint64_t format = 4;
 
 /// Numbers of living volume elements, but for their states.
 template <class Memory, class Visit>
 void visit_live_numbers(Memory& m, Visit visit) {
   visit(m.largest_stress);
   for (auto* x : {&m.count.elements, &m.count.steps, &m.count.solutions, &m.count.rounds, &m.count.bytes}) visit(*x);
-  for (auto* x : {&m.count.largest_mismatch, &m.count.power_mismatch, &m.count.dropped_stress}) visit(*x);
+  for (auto* x : {&m.count.largest_mismatch, &m.count.mismatch_work, &m.count.contact_work, &m.count.dropped_stress})
+    visit(*x);
 }
 
 std::string element_name(std::size_t k) {

@@ -1,5 +1,7 @@
 #include "coupling/press_material.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "base/check.h"
@@ -37,8 +39,15 @@ PressMaterial press_material(const PressScene& scene, MPI_Comm comm) {
     case Coupling::table: {
       const ResponseTable table = read_table(scene.table);
       require_same_material(scene, table);
-      return {std::make_shared<fem::ViscousSolid>(std::make_shared<TableLaw>(table, scene.clamp)),
-              table.youngs_modulus(scene.schedule->temperature(0)), scene.density};
+      const auto law = std::make_shared<TableLaw>(table, scene.clamp);
+      const double pressure = scene.schedule->pressure(0);
+      if (std::isnan(scene.density) && !law->presses_to(pressure))
+        throw InputError(fmt::format(
+            "process.start_pressure: {} says nothing of loose powder under {:.3g} MPa, only of {:.3g} to {:.3g} MPa",
+            scene.table.string(), 1e-6 * pressure, 1e-6 * law->loose_pressures().first,
+            1e-6 * law->loose_pressures().second));
+      return {std::make_shared<fem::ViscousSolid>(law), table.youngs_modulus(scene.schedule->temperature(0)),
+              std::isnan(scene.density) ? *law->presses_to(pressure) : scene.density};
     }
     case Coupling::live:
       return live(scene, comm);

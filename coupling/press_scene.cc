@@ -23,10 +23,16 @@ void read_size(Section& press, PressScene& scene) {
   scene.size.radius = scene.press.die_radius = 0.5 * diameter;
   scene.density = not_set;
   press.quantity("relative_density", scene.density, dim::none, Range::inside(0.1, 1),
-                 scene.coupling == Coupling::live ? Need::optional : Need::required,
-                 "of the powder before loading; live volume elements have their own");
-  if (scene.coupling == Coupling::live && press.has("relative_density") && !press.documenting())
-    press.fail("relative_density", "the volume elements have their own, at process.start_pressure; remove it");
+                 scene.coupling == Coupling::closed_form ? Need::required : Need::optional,
+                 "of the powder before loading; with a table or live volume elements theirs at process.start_pressure");
+  if (!press.documenting() && press.has("relative_density")) {
+    if (scene.coupling == Coupling::live)
+      press.fail("relative_density", "the volume elements have their own, at process.start_pressure; remove it");
+  } else if (!press.documenting() && scene.coupling == Coupling::table && !(scene.schedule->pressure(0) > 0)) {
+    press.fail_missing(
+        {"relative_density"},
+        "relative_density is missing; give it, or a process.start_pressure above 0, for which the table has one");
+  }
   press.choice("action", scene.settings.punches, {{"single", fem::Punches::upper}, {"double", fem::Punches::both}},
                Need::optional, "the upper punch alone comes into the die, or both alike");
   press.choice("geometry", scene.geometry,
@@ -214,7 +220,8 @@ PressScene read(SceneDocument document) {
     throw InputError(missing.what() + missing.misspelling(all.declared_keys()));
   }
   document.reject_unknown();
-  if (scene.coupling == Coupling::live) scene.control.order = 1;
+  constexpr double two_step_share = 2.0 / 9;  // BDF2's error over h^3 times the third derivative
+  if (scene.coupling == Coupling::live) scene.control.error_share = two_step_share;
   scene.effective_text = document.effective_text();
   return scene;
 }

@@ -30,7 +30,7 @@ struct PressScene {
   std::optional<Schedule> schedule;
   PressGeometry geometry = PressGeometry::axisymmetric;
   fem::CylinderSize size{};
-  double density = 0;  ///< relative, before loading; NaN: that of the volume elements
+  double density = 0;  ///< relative, before loading; NaN: that of the volume elements or of the table
   fem::PressSettings settings;
   fem::Press press{};
   fem::StepControl control;

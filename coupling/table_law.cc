@@ -74,6 +74,23 @@ fem::PorousStrength TableLaw::strength(const fem::PorousState& s) const {
   return {youngs * full_tensor(n.stiffness), yield_of(n.axial, n.lateral)};
 }
 
+std::pair<double, double> TableLaw::loose_pressures() const {
+  const auto axial = [&](double x) { return loose_values(cold_.at<loose_rows>(x)).axial; };
+  return {axial(cold_.lowest()), axial(cold_.highest())};
+}
+
+std::optional<double> TableLaw::presses_to(double pressure) const {
+  const auto [least, most] = loose_pressures();
+  if (!(pressure >= least && pressure <= most)) return {};
+  constexpr int halvings = 60;
+  double low = cold_.lowest(), high = cold_.highest();
+  for (int n = 0; n < halvings; ++n) {
+    const double middle = 0.5 * (low + high);
+    (loose_values(cold_.at<loose_rows>(middle)).axial < pressure ? low : high) = middle;
+  }
+  return std::exp(low);
+}
+
 double TableLaw::thermal_strain(double temperature) const {
   return expansion_ * temperature;
 }

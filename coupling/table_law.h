@@ -2,6 +2,8 @@
 // A porous solid by a response table: what grains do while they are loose, while they sinter, and when they are cold
 // again.
 
+#include <optional>
+
 #include "coupling/table_curves.h"
 #include "fem/press/porous_law.h"
 
@@ -23,6 +25,11 @@ class TableLaw : public fem::PorousLaw {
   double thermal_strain(double temperature) const override;
   double activation_temperature() const override { return activation_; }
   std::string outside(const fem::PorousState&) const override;
+
+  /// Axial pressures in the die for which the table holds loose powder [Pa].
+  std::pair<double, double> loose_pressures() const;
+  /// Relative density, without elastic strain, to which one of them presses loose powder in a die; nothing beyond them.
+  std::optional<double> presses_to(double pressure) const;
 
  private:
   struct Branch {

@@ -26,17 +26,16 @@ Vec3 parting(int component, const Vec3& branch) {
 CellAnswer cell_answer(const NetworkOperator& network, const std::vector<LinkForce>& forces, const Mat3& gradient,
                        const Eigen::VectorXd& velocity, double volume) {
   Stress stress{};
-  double mismatch = 0, power = 0;
+  CellAnswer a;
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const auto& [branch, force] = forces[k];
     add_symmetric(stress, branch, force);
     const double against_cell = force.dot(network.relative(network.links()[k], velocity));
-    mismatch += against_cell;
-    power += std::abs(against_cell + force.dot(gradient * branch));
+    a.mismatch += against_cell;
+    a.power += std::abs(against_cell + force.dot(gradient * branch));
   }
-  CellAnswer a;
+  a.mismatch = std::abs(a.mismatch);
   a.stress = Eigen::Map<const Vec6>(stress.data()) / volume;
-  a.power_mismatch = power > 0 ? std::abs(mismatch) / power : 0.0;
   return a;
 }
 

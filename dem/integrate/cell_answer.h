@@ -17,8 +17,9 @@ struct CellStretch {
 /// Components xx yy zz yz xz xy.
 struct CellAnswer {
   Vec6 stress = Vec6::Zero();  ///< Cauchy, at the end [Pa]
-  /// |sum F.v over the contacts - V stress:rate| over sum |F.v| at the end: what forces off balance do (Hill-Mandel).
-  double power_mismatch = 0;
+  double mismatch =
+      0;  ///< |sum F.v over the contacts - V stress:rate| at the end: of forces off balance (Hill-Mandel) [W]
+  double power = 0;  ///< sum |F.v| then [W]
   double error = 0;  ///< sum of the steps' estimates: approach of a contact over the mean radius
   int steps = 0;     ///< that it took
 };

@@ -103,6 +103,8 @@ InertiaFree::Trial InertiaFree::prepare(const State& s, const Setup& setup, cons
   const double kept = std::max(1 / setup.integration.mass_scaling, setup.integration.inertia_free.mass_share);
   const double scaling = kept * setup.integration.mass_scaling;
   inertia_.resize(network_.rows());
+  carried_ = before_;
+  carried_.head(3 * Eigen::Index(s.particles.size())) *= std::exp(-t.step / memory(s, setup, scaling));
   for (std::size_t p = 0; p < s.particles.size(); ++p)
     inertia_.segment<3>(Eigen::Index(3 * p)).setConstant(scaling / (s.particles.body[p].inverse_mass * t.step));
   if (guided) inertia_[network_.rows() - 1] = kept * s.punch.mass / t.step;
@@ -114,6 +116,20 @@ InertiaFree::Trial InertiaFree::prepare(const State& s, const Setup& setup, cons
   for (const Body& b : s.particles.body) mass += scaling / b.inverse_mass;
   cell_.begin(s, setup, t.step, t.end, mass);
   return t;
+}
+
+/// The time in which the masses that hold what no contact holds would swing on their contacts [s].  Motion is forgotten
+/// within it: a particle that flies in its cage for ever would end every step before its neighbours.
+double InertiaFree::memory(const State& s, const Setup& setup, double scaling) const {
+  double mass = 0, stiffness = 0;
+  for (std::size_t p = 0; p < s.particles.size(); ++p) {
+    const std::uint8_t m = s.particles.material[p];
+    mass += scaling / s.particles.body[p].inverse_mass;
+    stiffness += with_spring(setup.contact, table_->row(m, m), [&](const auto& spring) {
+      return spring.reference_stiffness(s.particles.body[p].radius);
+    });
+  }
+  return std::sqrt(mass / stiffness);
 }
 
 /// Particles, cell and walls as they will be at the end of the step with the present velocities.
@@ -144,7 +160,7 @@ void InertiaFree::respond(const State& s, const Setup& setup, const Trial& t, do
   look_ahead(s, t);
   network_.clear();
   network_.resist(inertia_);
-  resultant_ = external_ - inertia_.cwiseProduct(velocity_ - before_);
+  resultant_ = external_ - inertia_.cwiseProduct(velocity_ - carried_);
   double squares = external_.squaredNorm();
   const bool deforming = s.cell.periodic && !cell_.gradient().isZero(0);
   cell_.clear(network_.rows());
@@ -384,7 +400,7 @@ std::size_t InertiaFree::bytes() const {
          ahead_.body.capacity() * sizeof(Body) + ahead_.material.capacity() +
          walls_ahead_.contacts().capacity() * sizeof(walls_ahead_.contacts()[0]) +
          std::size_t(velocity_.size() + resultant_.size() + change_.size() + external_.size() + before_.size() +
-                     inertia_.size()) *
+                     carried_.size() + inertia_.size()) *
              sizeof(double);
 }
 

@@ -41,11 +41,12 @@ class InertiaFree {
   /// particles, walls and cell, and leaves the next proposal in State::stable_step.  The laws' histories follow in the
   /// next force pass.  `guided` is the load-controlled wall.  Returns h [s].
   ///
-  /// Solved are sum_c (F_c n + f c_n v_t) + F_ext = M (v - v_before)/h for each particle and sum F - p A likewise for
+  /// Solved are sum_c (F_c n + f c_n v_t) + F_ext = M (v - e v_before)/h for each particle and sum F - p A likewise for
   /// the guided wall, and V (goal - stress) = 0 for each component of a cell that a stress drives, all at the end of
   /// the step, with F_c(v) what the law's `update` will give; by Newton's method with difference quotients of `update`
   /// and conjugate gradients.  M is a small share of the scaled mass: nothing in steps of ordinary length, it keeps a
-  /// particle whose necks let go from being thrown as far as one likes in a short one.  h keeps (h/2) mean |v -
+  /// particle whose necks let go from being thrown as far as one likes in a short one, and forgets it within the
+  /// time of its own swing.  h keeps (h/2) mean |v -
   /// v_before| of the contacts below step_tolerance x mean radius, which estimates backward Euler's error; a mean,
   /// because a contact that snaps moves at once however short the step is. Throws RunError when no step balances the
   /// forces.
@@ -71,6 +72,7 @@ class InertiaFree {
 
   Trial prepare(const State&, const Setup&, const PairTable&, std::optional<std::size_t> guided, double step,
                 const CellStretch*);
+  double memory(const State&, const Setup&, double scaling) const;
   void look_ahead(const State&, const Trial&);
   /// `young`: share of a young neck's least resistance, falls from iterate to iterate.
   void respond(const State&, const Setup&, const Trial&, double young);
@@ -91,7 +93,8 @@ class InertiaFree {
   Eigen::VectorXd external_;        // forces from outside at the end of the step [N]
   Eigen::VectorXd inertia_;         // M/h of every row [N s/m]
   Eigen::VectorXd velocity_, before_, resultant_, change_;
-  double force_scale_ = 0;  // norm of all contact forces [N]
+  Eigen::VectorXd carried_;  // what is left of `before_` by the end of the step
+  double force_scale_ = 0;   // norm of all contact forces [N]
   double error_ = 0;
   int crawling_ = 0;  // steps in a row that lead nowhere
   InertiaFreeCount count_;

@@ -71,9 +71,9 @@ double PressRun<dim>::error_of(double step, const std::vector<double>& rate) con
   // Nothing to compare with: the square of its densification, of the order of its own error.
   if (step_ == 0) return mean(rate, [&](std::size_t, double r) { return std::pow(r * step, 2); });
   const double slope_step = 0.5 * (step_ + step_before_);
-  const bool carried_on = control_.order == 2 && step_before_ > 0;
+  const bool carried_on = step_before_ > 0;
   const double ahead = carried_on ? 0.5 * (step + step_) / slope_step : 0;
-  const double share = carried_on ? 1.0 / 12 : 0.5;
+  const double share = carried_on ? control_.error_share : 0.5;
   return std::sqrt(mean(rate, [&](std::size_t k, double r) {
     const double expected = rate_[k] + (carried_on ? ahead * (rate_[k] - rate_before_[k]) : 0);
     return std::pow((r - expected) * step * share, 2);
@@ -153,7 +153,7 @@ const PressRow& PressRun<dim>::advance() {
       continue;
     }
     row_.iterations += outcome.iterations;
-    const double order = control_.order == 2 && step_before_ > 0 ? 3 : 2;
+    const double order = step_before_ > 0 ? 3 : 2;
     const double factor = error > 0 ? 0.85 * std::pow(allowed / error, 1 / order) : 2;
     // Particles that snap move at once however short the step is.
     const bool snapped = error > 0.9 * last_error;

@@ -22,7 +22,9 @@ struct Press {
 struct StepControl {
   double accuracy = 1e-3;       ///< of the relative density at the end, by the estimate
   double smallest_step = 1e-9;  ///< over the process: a step that must be shorter ends the run
-  int order = 2;                ///< of the material's steps; 1 where its stress is that of the rate at their ends
+  /// Error of a step over the difference of its densification from that of the two steps before carried on: 1/12 of a
+  /// rule of the middle (its own error is 1/24 where the rate bends evenly).
+  double error_share = 1.0 / 12;
 };
 
 /// What is known after a step, of the whole body.
@@ -55,11 +57,9 @@ struct PressMemory {
   std::vector<double> rate, rate_before;        ///< of the points of all ranks [1/s]
 };
 
-/// Drives a body through a process.  A step's error is what its densification differs from that of the two steps before
-/// carried on, over 12 (the rule's own error is 1/24 of that difference where the rate bends evenly), or with a rule of
-/// first order half of what it differs from that of the step before; it is to be below
-/// the share of `accuracy` that the step's densification has of 1/2, and a little for time that passes.  Ends of stages
-/// are met exactly, and the estimate begins anew there.
+/// Drives a body through a process.  A step's error is `error_share` of what its densification differs from that of the
+/// two steps before carried on; it is to be below the share of `accuracy` that the step's densification has of 1/2, and
+/// a little for time that passes.  Ends of stages are met exactly, and the estimate begins anew there.
 template <int dim>
 class PressRun {
  public:

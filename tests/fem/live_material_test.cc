@@ -180,7 +180,7 @@ TEST(LiveMaterial, OneElementIsItsVolumeElementInADie) {
   EXPECT_GT(p.run.row().density.mean, alone.front().second + 0.03);
   EXPECT_NEAR(p.body.mass() / mass, 1, 1e-10);
   const LiveCount c = p.material->count();
-  EXPECT_LT(c.power_mismatch, 1e-2);
+  EXPECT_LT(c.mismatch_work, 1e-2 * c.contact_work);
   EXPECT_LT(c.largest_mismatch, 1e-2);
   EXPECT_GT(c.steps, std::uint64_t(p.run.row().steps));
 }
@@ -192,7 +192,7 @@ TEST(LiveMaterial, ARefusedStepLeavesNoTrace) {
       straight(scene, 1, 2, ElementSeeds::one, 0, 1e-2, MPI_COMM_SELF);
   const double hot_now = scene.schedule.temperature(0);
   const auto load = [&](double step, double pressure) { return fem::PressLoad{step, hot_now, radius, 1, pressure}; };
-  tried.body.try_step(load(60, 12e6));
+  tried.body.try_step(load(20, 10.5e6));
   tried.body.try_step(load(10, 10.1e6)), straight.body.try_step(load(10, 10.1e6));
   tried.body.accept(), straight.body.accept();
   EXPECT_EQ(tried.material->element(1).image(), straight.material->element(1).image());

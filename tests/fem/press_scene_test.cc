@@ -144,6 +144,8 @@ TEST(PressScene, MistakesOfACoupling) {
   expect_says(mistake({"press.coupling=live"}), {"press.relative_density", "remove"});
   expect_says(mistake({"press.coupling=live", "press.relative_density="}), {"rve", "missing"});
   expect_says(mistake({"press.coupling=table"}), {"press.table", "missing"});
+  expect_says(mistake({"press.coupling=table", "press.relative_density="}),
+              {"press", "relative_density is missing", "start_pressure"});
   const std::string both = good + std::string(element);
   expect_says(mistake({"rve.specimen.shape=free"}, both), {"rve.specimen"});
   expect_says(mistake({"press.coupling=live", "press.relative_density="}, both), {"start_pressure", "above 0"});
@@ -154,7 +156,7 @@ TEST(PressScene, LiveElementsHaveTheirDensity) {
   const PressScene s = read_press_scene(DENSIFY_EXAMPLES "/press_nial_live", {});
   EXPECT_EQ(s.coupling, Coupling::live);
   EXPECT_TRUE(std::isnan(s.density));
-  EXPECT_EQ(s.control.order, 1);
+  EXPECT_EQ(s.control.error_share, 2.0 / 9);  // BDF2
   EXPECT_EQ(read_press_scene_text(s.effective_text, {}).effective_text, s.effective_text);
 }
 

@@ -108,6 +108,12 @@ TEST(TableLaw, LoosePowderFollowsItsCurve) {
   EXPECT_NEAR(density[2], density[1], 1e-6);  // what has been pressed stays
   EXPECT_NEAR(density[3], density[1], 1e-6);  // and yields again only where it had yielded
   EXPECT_NEAR(density[4], curve(30e6), 2e-4);
+
+  const TableLaw law(made_up(), false);
+  EXPECT_NEAR(*law.presses_to(10e6), curve(10e6), 2e-4);
+  EXPECT_NEAR(*law.presses_to(20e6), 0.7, 2e-4);
+  EXPECT_FALSE(law.presses_to(1.01 * law.loose_pressures().second));
+  EXPECT_FALSE(law.presses_to(0.99 * law.loose_pressures().first));
 }
 
 // Tangents of a step in which the powder slides, or flows, against central differences; the law's own slopes are

@@ -27,6 +27,14 @@ cmp "$work/table.h5" "$work/one.h5"
 last=$(tail -n 1 "$work/result/history.csv" | cut -d, -f5)
 awk -v density="$last" 'BEGIN { exit !(density > 0.8 && density < 1) }' || fail "ends at a relative density of $last"
 
+# Where nothing says how dense the powder is, it is what the table has at the pressure that the process begins with.
+start() { "$densify" run "$scene" --quiet --set press.relative_density= --set process.start_pressure="$1" --out "$2"; }
+start "5 MPa" "$work/pressed"
+first=$(sed -n 2p "$work/pressed/history.csv" | cut -d, -f5)
+awk -v density="$first" 'BEGIN { exit !(density > 0.66 && density < 0.75) }' || fail "begins at $first under 5 MPa"
+refused 2 "start_pressure.*says nothing of loose powder under 900 MPa" start "900 MPa" "$work/none"
+refused 2 "relative_density is missing" start "0 MPa" "$work/none"
+
 sed 's/materials.NiAl/materials.other/; s/material = "NiAl"/material = "other"/' "$scene" >"$work/other.toml"
 refused 2 "is a table of NiAl, and \[rve\] is of other" "$densify" run "$work/other.toml" --out "$work/other"
 refused 3 "is outside the table" "$densify" run "$scene" --set press.table.extrapolate=refuse \
