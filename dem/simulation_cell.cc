@@ -8,6 +8,25 @@
 
 namespace densify::dem {
 
+namespace {
+
+constexpr double leap = 0.005;  // strain of a step in which a cell at rest is let go
+
+/// Of the stresses that drive a cell now, what the largest is off its goal [Pa].
+double largest_excess(const Simulation& sim) {
+  const Setup& setup = sim.setup();
+  const std::size_t stage = setup.schedule.stage_at(sim.state().time);
+  double excess = 0;
+  for (std::size_t c = 0; c < 6; ++c) {
+    if (setup.cell_path->stages[stage][c].control != CellControl::stress) continue;
+    const auto [i, j] = tensor_places[c];
+    excess = std::max(excess, std::abs(sim.cell_goal(c).value - sim.cell_stress()(i, j)));
+  }
+  return excess;
+}
+
+}  // namespace
+
 CellGoal Simulation::cell_goal(std::size_t component) const {
   const CellPath& path = *setup_.cell_path;
   const Schedule& schedule = setup_.schedule;
@@ -71,11 +90,19 @@ void Simulation::weigh_cell(CellStiffness sums, double step) {
     sums.damping.add(once.damping, across - 1);
   }
   weigh(state_.cell_drive, sums, cell_share(), step, setup_.integration.step_safety);
+  if (!equalised()) return;
+  // Contacts that flow at once leave their load to a cell that hardly anything holds: it must not be thrown.
+  CellDrive& drive = state_.cell_drive;
+  const double heavier = state_.cell.volume() * largest_excess(*this) * step * step / (leap * drive.mass);
+  if (!(heavier > 1)) return;
+  drive.mass *= heavier;
+  drive.damping *= std::sqrt(heavier);
+  drive.memory *= std::sqrt(heavier);
 }
 
-/// e of `weigh`.  Where masses follow from the step, 1.5 makes the cell 6.6 times lighter for particles of 2.3 times the
-/// mass, and the stress follows its goal the better.  Real masses would pay for it with shorter steps; with friction
-/// the heavier particles would slide further than a balance of energy within 1 % allows.
+/// e of `weigh`.  Where masses follow from the step, 1.5 makes the cell 6.6 times lighter for particles of 2.3 times
+/// the mass, and the stress follows its goal the better.  Real masses would pay for it with shorter steps; with
+/// friction the heavier particles would slide further than a balance of energy within 1 % allows.
 double Simulation::cell_share() const {
   constexpr double light_cell = 1.5;
   return equalised() && !setup_.contact.friction ? light_cell : carriage_share;
@@ -83,14 +110,7 @@ double Simulation::cell_share() const {
 
 /// The step in which a cell at rest strains by a small share: a jump of a stress must not throw it. [s]
 double Simulation::cell_leap() const {
-  constexpr double leap = 0.005;
-  const std::size_t stage = setup_.schedule.stage_at(state_.time);
-  double excess = 0;  // [Pa]
-  for (std::size_t c = 0; c < 6; ++c) {
-    if (setup_.cell_path->stages[stage][c].control != CellControl::stress) continue;
-    excess = std::max(excess, std::abs(cell_goal(c).value - cell_stress_(tensor_places[c][0], tensor_places[c][1])));
-  }
-  return std::sqrt(leap * state_.cell_drive.mass / (state_.cell.volume() * excess));
+  return std::sqrt(leap * state_.cell_drive.mass / (state_.cell.volume() * largest_excess(*this)));
 }
 
 CellAnswer Simulation::strain(CellStretch stretch) {
