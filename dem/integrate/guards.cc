@@ -64,6 +64,12 @@ constexpr const char* smaller_step =
     "; the step is too large for the contacts: try a smaller step_safety, limit_interval "
     "or mass_scaling";
 
+/// Times that add up to the same bits however a run is cut into pieces: multiples of a 2^40th of the process [s].
+double countable(double time, double process) {
+  const double quantum = std::exp2(std::floor(std::log2(process)) - 40);
+  return std::round(time / quantum) * quantum;
+}
+
 }  // namespace
 
 struct EnergySums {
@@ -348,7 +354,8 @@ void Guards::look_at_contacts(const GuardView& view) {
       flowing || !view.setup.loads.empty() || sums.reserve > 0 || (view.pressure > 0 && s.punch.mass > 0);
   if (!std::isnan(time_) && driven) {
     const double springs = sums.elastic + sums.reserve;
-    if (sums.motion() > view.setup.integration.guards.quasi_static_ratio * springs) not_quasi_static_ += s.time - time_;
+    if (sums.motion() > view.setup.integration.guards.quasi_static_ratio * springs)
+      not_quasi_static_ += countable(s.time - time_, view.setup.schedule.end());
     if (springs > 0 && sums.motion() / springs > largest_ratio_)
       largest_ratio_ = sums.motion() / springs, time_of_largest_ratio_ = s.time;
   }
