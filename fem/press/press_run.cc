@@ -155,8 +155,8 @@ const PressRow& PressRun<dim>::advance() {
     row_.iterations += outcome.iterations;
     const double order = step_before_ > 0 ? 3 : 2;
     const double factor = error > 0 ? 0.85 * std::pow(allowed / error, 1 / order) : 2;
-    // Particles that snap move at once however short the step is.
-    const bool snapped = error > 0.9 * last_error;
+    // Particles that snap move at once however short the step is; in a long one there is more than that.
+    const bool snapped = error > 0.9 * last_error && step <= first_share * length;
     last_error = error;
     if (error > allowed && step > least_share * length && !snapped) {
       ++row_.rejected;
