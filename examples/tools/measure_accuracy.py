@@ -33,17 +33,23 @@ damping_ratio = 0.3
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-def path(rng, pressure, peak, rate, hold):
-    """What drives a cell, as stages."""
-    kind = rng.choice(["all sides", "die", "free"])
-    load = f'pressure = "{pressure} MPa"'
-    if kind == "die":
-        load = f'stress = {{ zz = "-{pressure} MPa" }}\nstrain_rate = {{ xx = "0 1/s", yy = "0 1/s" }}'
-    letting_go = f'[[process.stage]]\nname = "letting go"\nduration = "10 min"\npressure = "0 Pa"\n' if kind == "free" else ""
-    unloading = "" if kind == "free" else (
-        '[[process.stage]]\nname = "unloading"\nduration = "20 min"\n'
-        + ('stress = { zz = "0 Pa" }' if kind == "die" else 'pressure = "0 Pa"') + "\n")
-    return kind, f"""[process]
+def powder(title, material, particles, mean, spread, ratio):
+    return f"""title = "Accuracy, {title}"
+[materials.{material}]
+library = "{material}"
+[[powder]]
+material = "{material}"
+number = {particles}
+sizes = "lognormal"
+mean = "{mean} um"
+standard_deviation = "{spread:.4g} um"
+minimum = "{mean / ratio**0.5 * 0.9:.4g} um"
+maximum = "{mean * ratio**0.5 * 1.1:.4g} um"
+"""
+
+
+def process(load, peak, rate, hold, unloading, letting_go=""):
+    return f"""[process]
 start_temperature = "20 degC"
 [[process.stage]]
 name = "loading"
@@ -65,6 +71,19 @@ visualisation = false
 """
 
 
+def path(rng, pressure, peak, rate, hold):
+    """What drives a cell, as stages."""
+    kind = rng.choice(["all sides", "die", "free"])
+    load = f'pressure = "{pressure} MPa"'
+    if kind == "die":
+        load = f'stress = {{ zz = "-{pressure} MPa" }}\nstrain_rate = {{ xx = "0 1/s", yy = "0 1/s" }}'
+    letting_go = f'[[process.stage]]\nname = "letting go"\nduration = "10 min"\npressure = "0 Pa"\n' if kind == "free" else ""
+    unloading = "" if kind == "free" else (
+        '[[process.stage]]\nname = "unloading"\nduration = "20 min"\n'
+        + ('stress = { zz = "0 Pa" }' if kind == "die" else 'pressure = "0 Pa"') + "\n")
+    return kind, process(load, peak, rate, hold, unloading, letting_go)
+
+
 def cell(rng, number):
     material = rng.choice(["NiAl", "NiAl", "Cu", "Al2O3"])
     particles = rng.choice([100, 200, 300, 500])
@@ -75,23 +94,12 @@ def cell(rng, number):
     rate = rng.choice([5, 15, 40])
     hold = rng.choice([5, 15, 40])
     closing = rng.random() < 0.5
-    kind, process = path(rng, pressure, peak, rate, hold)
+    kind, stages = path(rng, pressure, peak, rate, hold)
     spread = {1.0: 0.05, 2.0: 0.2, 4.0: 0.35}[ratio] * mean
     what = f"{material}, {particles}, {kind}, {pressure} MPa, {peak} degC, {rate} K/min, {hold} min" + (
         ", pore closure" if closing else ""
     )
-    return what, f"""title = "Accuracy, cell {number}: {what}"
-[materials.{material}]
-library = "{material}"
-[[powder]]
-material = "{material}"
-number = {particles}
-sizes = "lognormal"
-mean = "{mean} um"
-standard_deviation = "{spread:.4g} um"
-minimum = "{mean / ratio**0.5 * 0.9:.4g} um"
-maximum = "{mean * ratio**0.5 * 1.1:.4g} um"
-[specimen]
+    return what, powder(f"cell {number}: {what}", material, particles, mean, spread, ratio) + f"""[specimen]
 shape = "periodic"
 [specimen.packing]
 green_density = {rng.choice([0.58, 0.60, 0.62])}
@@ -99,7 +107,7 @@ seed = {number + 1}
 [specimen.perturbation]
 size = 1e-3
 {CONTACT}{"[contact.sintering.pore_closure]" if closing else ""}
-{process}"""
+{stages}"""
 
 
 def scene(rng, number):
@@ -117,23 +125,14 @@ def scene(rng, number):
     shape = rng.choice(["cylinder", "cylinder", "box"])
     friction = rng.random() < 0.2
     spread = {1.0: 0.05, 2.0: 0.2, 4.0: 0.35}[ratio] * mean
-    sizes = (
-        f'sizes = "lognormal"\nmean = "{mean} um"\nstandard_deviation = "{spread:.4g} um"\n'
-        f'minimum = "{mean / ratio**0.5 * 0.9:.4g} um"\nmaximum = "{mean * ratio**0.5 * 1.1:.4g} um"'
-    )
     size = f'diameter = "{diameter:.5g} um"' if shape == "cylinder" else f'size = ["{diameter:.5g} um", "{diameter:.5g} um"]'
     what = f"{material}, {particles} in a {shape}, {pressure} MPa, {peak} degC, {rate} K/min, {hold} min" + (
         ", friction" if friction else ""
     )
     rub = "[contact.friction]\ncoefficient = 0.3\n" if friction else ""
-    return what, f"""title = "Accuracy, scene {number}: {what}"
-[materials.{material}]
-library = "{material}"
-[[powder]]
-material = "{material}"
-number = {particles}
-{sizes}
-[specimen]
+    unloading = '[[process.stage]]\nname = "unloading"\nduration = "20 min"\npressure = "0 MPa"\n'
+    stages = process(f'pressure = "{pressure} MPa"', peak, rate, hold, unloading)
+    return what, powder(f"scene {number}: {what}", material, particles, mean, spread, ratio) + f"""[specimen]
 shape = "{shape}"
 {size}
 [specimen.packing]
@@ -141,30 +140,7 @@ green_density = {green}
 seed = {number + 1}
 [specimen.perturbation]
 size = 1e-3
-{CONTACT}{rub}[process]
-start_temperature = "20 degC"
-[[process.stage]]
-name = "loading"
-duration = "20 min"
-pressure = "{pressure} MPa"
-[[process.stage]]
-name = "heating"
-rate = "{rate} K/min"
-temperature = "{peak} degC"
-[[process.stage]]
-name = "hold"
-duration = "{hold} min"
-[[process.stage]]
-name = "cooling"
-duration = "60 min"
-temperature = "20 degC"
-[[process.stage]]
-name = "unloading"
-duration = "20 min"
-pressure = "0 MPa"
-[output]
-visualisation = false
-"""
+{CONTACT}{rub}{stages}"""
 
 
 def ends_of_stages(path):

@@ -152,8 +152,6 @@ TEST(CellDrive, StressOfACrystalAtAnyStiffness) {
   }
 }
 
-// Die pressing: no lateral strain, an axial stress.  The strain is (sigma - sigma_0)/C11, the lateral stress changes by
-// C12/C11 = 1/2 of the axial.
 // The shipped powder under 30 MPa through loading, activation and hold with `standard` accuracy: the mean of every
 // component within 0.1 % of the load, and no step further than 3 % away, which grains that rearrange at once may come
 // to.
@@ -179,9 +177,10 @@ TEST(CellDrive, IsNotThrownByNecksThatFlowAtOnce) {
   Simulation sim(dem::make_setup(scene, dem::make_specimen(scene, 1, {}), 1));
   const Control c = run_to_end(sim, 2900);  // activated at 2737 s, in 60 s
   EXPECT_LT(c.mean, 1e-3 * 45e6);
-  EXPECT_GT(sim.state().time, 2900);
 }
 
+// Die pressing: no lateral strain, an axial stress.  The strain is (sigma - sigma_0)/C11, the lateral stress changes by
+// C12/C11 = 1/2 of the axial.
 TEST(CellDrive, MixedControl) {
   constexpr double k = 1e5;
   auto s = crystal(k, 6000, {0.5, 0.5});
